@@ -1,0 +1,417 @@
+/* laves: near-regular tetrahedral meshes of any solid.  The public interface, in order of use:
+ *
+ *   version -> results and errors -> context -> domain -> options -> generate -> mesh -> check -> files
+ *
+ * Conventions, everywhere: signed distance negative inside; tetrahedra positive, det[b-a, c-a, d-a] > 0; boundary
+ * triangles face outwards; indices from 0; coordinates in the units of the input; angles in degrees.
+ *
+ * No function prints, exits, or touches signals, and there is no global state. Functions that can fail return a
+ * laves_result and, where they take a laves_error, leave one sentence in it that says what is wrong, where, and what
+ * to do. Free functions accept NULL. Two contexts may be used from two threads at once; objects of one context may be
+ * read from many threads, but changed by one only. */
+#ifndef LAVES_LAVES_H
+#define LAVES_LAVES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "laves/version.h"
+
+#if defined(LAVES_STATIC)
+#define LAVES_API
+#elif defined(_WIN32) && defined(LAVES_BUILD)
+#define LAVES_API __declspec(dllexport)
+#elif defined(_WIN32)
+#define LAVES_API __declspec(dllimport)
+#else
+#define LAVES_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- version ---------------------------------------------------------------------------------------------------- */
+
+/// The version of the library in use, such as "0.1.0"; compare with LAVES_VERSION, the version of this header.
+LAVES_API const char *laves_version(void);
+
+/* ---- results and errors ----------------------------------------------------------------------------------------- */
+
+/// One list makes the enum, the names and the messages: X(name, exit code of the program, meaning).
+#define LAVES_RESULT_LIST(X)                                               \
+  X(OK, 0, "done")                                                         \
+  X(TARGET_MISSED, 3, "the mesh is valid, but a wished target was missed") \
+  X(ERROR_OPTION, 1, "an option or argument is out of its range")          \
+  X(ERROR_INPUT, 2, "the input cannot be read, or describes no solid")     \
+  X(ERROR_MEMORY, 4, "out of memory, or over the memory limit")            \
+  X(ERROR_WRITE, 5, "the output cannot be written")                        \
+  X(ERROR_CANCELLED, 130, "cancelled by the progress callback")            \
+  X(ERROR_INTERNAL, 70, "a promise of the library was broken; please report it")
+
+typedef enum laves_result {
+#define LAVES_RESULT_ENUM(name, code, text) LAVES_##name,
+  LAVES_RESULT_LIST(LAVES_RESULT_ENUM)
+#undef LAVES_RESULT_ENUM
+} laves_result;
+
+/// A sentence for people. Zero it before the call, or not: a call that fails overwrites it, one that succeeds leaves it.
+typedef struct laves_error {
+  laves_result result;
+  char text[500];  ///< UTF-8, ends with NUL, no line break
+} laves_error;
+
+/// "LAVES_ERROR_INPUT" and the like; never NULL.
+LAVES_API const char *laves_result_name(laves_result result);
+/// The meaning in the list above; never NULL.
+LAVES_API const char *laves_result_text(laves_result result);
+/// The exit code that the program uses for this result.
+LAVES_API int laves_result_exit_code(laves_result result);
+
+/* ---- context ---------------------------------------------------------------------------------------------------- */
+
+/// Everything that calls share: memory, threads, progress. All other objects come from one and must be freed before it.
+typedef struct laves_context laves_context;
+
+/// Resizes a block as realloc does: pointer NULL allocates, new_bytes 0 frees (and returns NULL).
+/// Must be callable from several threads at once. Blocks are aligned for any basic type.
+typedef void *laves_reallocate_fn(void *user, void *pointer, size_t old_bytes, size_t new_bytes);
+
+/// Called with a phase name ("classify", "improve", ...) and the fraction of that phase done, 0..1, now and then, always
+/// from the thread that called the library. Return false to cancel: the call then ends with LAVES_ERROR_CANCELLED
+/// within about 0.2 seconds.
+typedef bool laves_progress_fn(void *user, const char *phase, double fraction);
+
+typedef struct laves_context_options {
+  int thread_count;                 ///< threads to use; 0: one per core. The result never depends on it.
+  size_t memory_limit;              ///< bytes that the context may hold at once; 0: no limit
+  laves_reallocate_fn *reallocate;  ///< NULL: the C library's
+  void *reallocate_user;
+  laves_progress_fn *progress;  ///< NULL: none
+  void *progress_user;
+  uint32_t cookie;  ///< set by laves_context_options_default(), checked by laves_context_create()
+} laves_context_options;
+
+LAVES_API laves_context_options laves_context_options_default(void);
+
+/// @param options  copied; NULL means the defaults
+/// @return NULL when memory is short or the options did not come from laves_context_options_default()
+LAVES_API laves_context *laves_context_create(const laves_context_options *options);
+LAVES_API void laves_context_free(laves_context *context);
+/// Bytes held now by all objects of the context, and the most that were held at once since it was made.
+LAVES_API size_t laves_context_bytes(const laves_context *context);
+LAVES_API size_t laves_context_peak_bytes(const laves_context *context);
+
+/* ---- domain ----------------------------------------------------------------------------------------------------- */
+
+/// A solid: anything with an inside. Read only once made; safe to read from many threads.
+typedef struct laves_domain laves_domain;
+
+/// Reads a triangle surface (STL, OBJ, PLY, OFF; the format is found from the content) or a Lua script (.lua).
+/// @param path    file name
+/// @param domain  out: owned by the caller, free with laves_domain_free(); NULL on failure
+/// @param error   out, optional
+/// @return LAVES_OK, LAVES_ERROR_INPUT, LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED
+LAVES_API laves_result laves_domain_from_file(laves_context *context, const char *path, laves_domain **domain,
+                                              laves_error *error);
+
+/// Builds an implicit solid from a Lua 5.4 expression such as "sphere(1) - cylinder{r=0.4}"; docs/implicit.md lists
+/// the vocabulary. Runs in a sandbox: no files but surface leaves, no processes, bounded steps and memory.
+LAVES_API laves_result laves_domain_from_expression(laves_context *context, const char *text, laves_domain **domain,
+                                                    laves_error *error);
+
+/// Builds a domain from triangles in memory; they are copied.
+/// @param points           double[point_count][3], finite
+/// @param triangles        uint32_t[triangle_count][3], indices into points
+/// @param tags             int32_t[triangle_count], carried to the nearest boundary triangles of the mesh; NULL: none
+LAVES_API laves_result laves_domain_from_triangles(laves_context *context, const double *points, size_t point_count,
+                                                   const uint32_t *triangles, size_t triangle_count, const int32_t *tags,
+                                                   laves_domain **domain, laves_error *error);
+
+/// A solid given by a function of the caller's.
+typedef struct laves_function {
+  /// values[i] = phi(points[3i..3i+2]) for i < count: negative inside, zero on the surface, positive outside; finite.
+  /// Called from several threads at once, with counts of one to a few thousand.
+  void (*evaluate)(void *user, const double *points, size_t count, double *values);
+  void *user;
+  double lower[3], upper[3];  ///< a box that contains the solid with a little room
+  /// |phi(a) - phi(b)| <= lipschitz * |a - b|, which lets far regions be skipped; 0: unknown, everything is evaluated
+  double lipschitz;
+} laves_function;
+
+LAVES_API laves_result laves_domain_from_function(laves_context *context, const laves_function *function, laves_domain **domain,
+                                                  laves_error *error);
+
+LAVES_API void laves_domain_free(laves_domain *domain);
+
+/// Signed value of the domain at points: negative inside. A true distance for surfaces; for implicit solids whatever
+/// the expression yields.
+/// @param points  double[count][3]    @param values  out: double[count]
+LAVES_API void laves_domain_evaluate(const laves_domain *domain, const double *points, size_t count, double *values);
+
+typedef enum laves_domain_kind { LAVES_DOMAIN_SURFACE, LAVES_DOMAIN_IMPLICIT, LAVES_DOMAIN_FUNCTION } laves_domain_kind;
+
+/// Defects that a surface can have, with a phrase for people: X(name, phrase).
+#define LAVES_DEFECT_LIST(X)                                  \
+  X(OPEN_EDGE, "open edges")                                  \
+  X(NONMANIFOLD_EDGE, "edges with more than two faces")       \
+  X(DIRECTION, "edges whose two faces disagree in direction") \
+  X(NONMANIFOLD_VERTEX, "points where several fans meet")     \
+  X(DUPLICATE_FACE, "faces that repeat another")              \
+  X(DEGENERATE_FACE, "faces without area")                    \
+  X(CROSSING, "pairs of faces that cross")                    \
+  X(REPEATED_POINT, "points that repeat another")             \
+  X(UNUSED_POINT, "points that no face uses")
+
+typedef enum laves_defect {
+#define LAVES_DEFECT_ENUM(name, text) LAVES_DEFECT_##name,
+  LAVES_DEFECT_LIST(LAVES_DEFECT_ENUM)
+#undef LAVES_DEFECT_ENUM
+      LAVES_DEFECT_COUNT
+} laves_defect;
+
+/// A phrase such as "open edges".
+LAVES_API const char *laves_defect_text(laves_defect defect);
+
+/// What a domain is.
+typedef struct laves_domain_info {
+  laves_domain_kind kind;
+  const char *format;         ///< "STL (binary)", "OBJ", "Lua expression", ...; owned by the domain
+  double lower[3], upper[3];  ///< box around the surface, without room
+  double volume;              ///< of the solid; NAN when only sampling can tell
+  double area;                ///< of the surface; NAN when unknown
+  // Surfaces only, zero otherwise:
+  size_t point_count;      ///< different points that faces use
+  size_t triangle_count;   ///< faces in use
+  size_t component_count;  ///< parts joined by edges
+  bool closed;             ///< every edge is used as often forwards as backwards
+  bool turned;             ///< the input was inside out and was turned
+  bool winding;            ///< inside is decided by the generalised winding number
+  size_t defects[LAVES_DEFECT_COUNT];
+  double defect_place[LAVES_DEFECT_COUNT][3];  ///< a place where the first of each kind stands
+  int tag_count;                               ///< named parts; see laves_domain_tag_name()
+} laves_domain_info;
+
+LAVES_API void laves_domain_get_info(const laves_domain *domain, laves_domain_info *info);
+/// Name of a tag (STL solid, OBJ group, ...), or NULL when index is not in [0, tag_count). Owned by the domain.
+LAVES_API const char *laves_domain_tag_name(const laves_domain *domain, int index);
+
+/// One place where a solid is thin.
+typedef struct laves_thin_place {
+  double place[3];
+  double thickness;  ///< length of the chord through the solid, against the surface normal
+} laves_thin_place;
+
+/// Finds the thinnest parts of a surface by chords shot inwards from the surface at a fixed set of samples.
+/// @param places    out: laves_thin_place[capacity], thinnest first, places at least twice their thickness apart
+/// @param capacity  how many places at most
+/// @return how many were found; 0 for domains that are not surfaces
+LAVES_API size_t laves_domain_thin_places(const laves_domain *domain, laves_thin_place *places, size_t capacity);
+
+/* ---- options ---------------------------------------------------------------------------------------------------- */
+
+typedef enum laves_align { LAVES_ALIGN_NONE, LAVES_ALIGN_PCA, LAVES_ALIGN_ROTATION } laves_align;
+
+/// What a mesh shall be. From laves_options_default(), then changed. At most one of size, relative_size, tet_target
+/// and vertex_target may be given; none: a size that suits the domain, about 50 thousand tetrahedra.
+typedef struct laves_options {
+  double size;            ///< target edge length (mean edge of the tiling), units of the input; 0: not given
+  double relative_size;   ///< the same as a fraction of the diagonal of the bounding box, (0, 0.5]; 0: not given
+  int64_t tet_target;     ///< wished number of tetrahedra; met within 3 %; 0: not given
+  int64_t vertex_target;  ///< wished number of vertices; met within 3 %; 0: not given
+  laves_align align;      ///< how the lattice lies: along the axes, along the principal axes, or turned by `rotation`
+  double rotation[9];     ///< row-major rotation matrix, lattice to input; used with LAVES_ALIGN_ROTATION
+  bool improve;           ///< false: leave the boundary layer as it was snapped
+  double min_dihedral;    ///< asked window for every dihedral angle, degrees; default 40, range 0..60
+  double max_dihedral;    ///< default 125, range 80..180
+  double volume_length;   ///< asked volume-length ratio sqrt(2) 6V / rms(edge)^3, 0..0.8; default 0.6
+  uint32_t cookie;        ///< set by laves_options_default(), checked by laves_generate()
+} laves_options;
+
+LAVES_API laves_options laves_options_default(void);
+
+/* ---- generate --------------------------------------------------------------------------------------------------- */
+
+typedef struct laves_mesh laves_mesh;
+
+enum { LAVES_STAGE_CAPACITY = 16, LAVES_WARNING_CAPACITY = 16 };
+
+/// What was done: filled by laves_generate().
+typedef struct laves_report {
+  double size;    ///< the size used
+  double volume;  ///< of the domain: exact for closed surfaces, else by sampling
+  int stage_count;
+  struct {
+    const char *name;  ///< "background", "classify", "snap", "improve", ...; static
+    double wall_seconds;
+    double cpu_seconds;  ///< of the whole process during the stage
+  } stages[LAVES_STAGE_CAPACITY];
+  size_t peak_bytes;        ///< most memory that the context held at once
+  size_t lattice_tets;      ///< tetrahedra that are exact tiles
+  size_t snapped_vertices;  ///< lattice vertices that were moved on to the surface
+  size_t pinches;           ///< places where the sampled solid touched itself and was parted or trimmed
+  size_t off_surface;       ///< boundary vertices that had to stay off the surface to keep tetrahedra positive
+  size_t outside_window;    ///< tetrahedra outside the asked window
+  int warning_count;
+  char warnings[LAVES_WARNING_CAPACITY][240];
+} laves_report;
+
+/// Builds the tetrahedral mesh of a domain from the C15 tiling.
+/// @param domain   read only; may be evaluated from many threads at once
+/// @param options  copied
+/// @param mesh     out: owned by the caller, free with laves_mesh_free(); NULL on failure
+/// @param report   out, optional
+/// @param error    out, optional
+/// @return LAVES_OK; LAVES_TARGET_MISSED when the mesh is valid but a wished target was not reached (see report);
+///         LAVES_ERROR_OPTION, LAVES_ERROR_INPUT (nothing inside at this size), LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED
+/// Cost: about O(volume / size^3) time and memory for the interior, O(area / size^2) oracle calls.
+/// The result is the same for any number of threads.
+LAVES_API laves_result laves_generate(laves_context *context, const laves_domain *domain, const laves_options *options,
+                                      laves_mesh **mesh, laves_report *report, laves_error *error);
+
+/// The plain tiling of a box: all tiles whose cell lies within `cells` periods along each axis, cell side 2.5118 * size.
+LAVES_API laves_result laves_generate_tiling(laves_context *context, const int cells[3], double size, laves_mesh **mesh,
+                                             laves_error *error);
+
+/* ---- mesh ------------------------------------------------------------------------------------------------------- */
+
+/// A tetrahedral mesh; the arrays belong to it and stay where they are until it is freed.
+LAVES_API void laves_mesh_free(laves_mesh *mesh);
+
+/// Builds a mesh from arrays, which are copied; boundary faces are found. Tetrahedra may be of either orientation here:
+/// laves_check_mesh() tells.
+/// @param points  double[vertex_count][3]   @param tets  int32_t[tet_count][4]
+/// @param regions int32_t[tet_count] or NULL
+LAVES_API laves_result laves_mesh_from_arrays(laves_context *context, const double *points, size_t vertex_count,
+                                              const int32_t *tets, size_t tet_count, const int32_t *regions, laves_mesh **mesh,
+                                              laves_error *error);
+
+LAVES_API size_t laves_mesh_vertex_count(const laves_mesh *mesh);
+LAVES_API size_t laves_mesh_tet_count(const laves_mesh *mesh);
+LAVES_API size_t laves_mesh_face_count(const laves_mesh *mesh);         ///< boundary triangles
+LAVES_API const double *laves_mesh_points(const laves_mesh *mesh);      ///< double[vertex_count][3]
+LAVES_API const int32_t *laves_mesh_tets(const laves_mesh *mesh);       ///< int32_t[tet_count][4]
+LAVES_API const int32_t *laves_mesh_faces(const laves_mesh *mesh);      ///< int32_t[face_count][3], outwards
+LAVES_API const int32_t *laves_mesh_regions(const laves_mesh *mesh);    ///< int32_t[tet_count], or NULL: all 1
+LAVES_API const int32_t *laves_mesh_face_tags(const laves_mesh *mesh);  ///< int32_t[face_count], or NULL: all 1
+/// Tets [0, lattice_tet_count) are exact tiles of the tiling; the rest is the boundary layer.
+LAVES_API size_t laves_mesh_lattice_tet_count(const laves_mesh *mesh);
+/// Named groups of regions (dimension 3) and face tags (dimension 2); NULL when the tag has no name.
+LAVES_API const char *laves_mesh_group_name(const laves_mesh *mesh, int dimension, int32_t tag);
+/// A 128-bit hash of points, tets, faces, regions and tags, as 32 hexadecimal digits and NUL.
+LAVES_API void laves_mesh_hash(const laves_mesh *mesh, char hash[33]);
+
+/* ---- check ------------------------------------------------------------------------------------------------------ */
+
+enum { LAVES_HISTOGRAM_BINS = 36, LAVES_PLACE_CAPACITY = 16 };
+
+/// Minimum, maximum, mean and standard deviation over all tetrahedra.
+typedef struct laves_statistic {
+  double min, max, mean, deviation;
+} laves_statistic;
+
+/// What laves_check_mesh() finds, from the arrays alone.
+typedef struct laves_check {
+  size_t vertices, tets, faces;
+  // Validity; a mesh is valid when `valid` is set, that is when all of these are zero.
+  bool valid;
+  size_t bad_indices;           ///< corners that are out of range or repeated within a tetrahedron
+  size_t inverted_tets;         ///< det <= 0 by an exact test
+  size_t nonconforming_faces;   ///< faces with more than two tetrahedra, or two on the same side
+  size_t nonmanifold_edges;     ///< boundary edges without exactly two boundary faces
+  size_t nonmanifold_vertices;  ///< boundary vertices whose boundary faces form more than one fan
+  size_t unused_vertices;       ///< vertices in no tetrahedron (allowed, but told)
+  // Topology of the boundary.
+  size_t components;  ///< of the solid, joined through faces
+  size_t boundary_components;
+  int64_t genus;  ///< summed over boundary components; meaningful when manifold
+  // Quality.
+  double volume, area;
+  double edge_min, edge_max, edge_mean;
+  laves_statistic min_dihedral, max_dihedral;  ///< over tets, degrees: smallest and largest angle of each
+  laves_statistic radius_ratio;                ///< 3 r / R, 1 for the regular tetrahedron
+  laves_statistic radius_edge;                 ///< R / shortest edge, over the regular one's: 1 and up
+  laves_statistic volume_length;               ///< sqrt(2) 6V / rms(edge)^3
+  size_t histogram[LAVES_HISTOGRAM_BINS];      ///< of all dihedral angles, bins of 5 degrees from 0 to 180
+  double min_dihedral_place[3], max_dihedral_place[3], radius_ratio_place[3];  ///< centroids of the worst tets
+  // Distance to a domain, in the units of the mesh; set when has_distance.
+  bool has_distance;
+  double to_surface_max, to_surface_mean;      ///< from samples of the boundary to the surface
+  double from_surface_max, from_surface_mean;  ///< from samples of the surface to the boundary
+  double to_surface_place[3], from_surface_place[3];
+  double domain_volume;  ///< NAN when unknown
+} laves_check;
+
+/// Checks a mesh by code that shares nothing with the stages that make meshes.
+/// @param domain  the solid to measure distances against; NULL: none
+/// @return LAVES_OK when the check ran (see check->valid), LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED
+/// Cost: linear in the tets, about 0.2 microseconds each; distances about one closest-point query per sample.
+LAVES_API laves_result laves_check_mesh(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
+                                        laves_check *check, laves_error *error);
+
+/// A place where a tetrahedron is outside a window, or where mesh and surface are further apart than asked.
+typedef struct laves_place {
+  double place[3];
+  double value;             ///< the worst angle in degrees (or the volume-length ratio, below 1); or the distance
+  int64_t tet;              ///< index of the tet; -1 for distances
+  double curvature_radius;  ///< smallest radius of curvature of the domain's surface near by, as seen at the scale of the
+                            ///< mesh's edges there; INFINITY where flat; NAN without a domain
+} laves_place;
+
+/// Finds the tetrahedra whose dihedral angles leave [min_dihedral, max_dihedral] or whose volume-length ratio is below
+/// volume_length, worst first.
+/// @param domain    for the curvature; NULL: none
+/// @param places    out: laves_place[capacity]    @param count  out: how many there are in all, may exceed capacity
+LAVES_API laves_result laves_check_window(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
+                                          double min_dihedral, double max_dihedral, double volume_length, laves_place *places,
+                                          size_t capacity, size_t *count, laves_error *error);
+
+/// Finds samples of mesh boundary and surface that are further than `distance` from the other, furthest first, one for
+/// each neighbourhood of radius 2 * `distance`.
+LAVES_API laves_result laves_check_distance(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
+                                            double distance, laves_place *places, size_t capacity, size_t *count,
+                                            laves_error *error);
+
+/* ---- files ------------------------------------------------------------------------------------------------------ */
+
+typedef enum laves_format {
+  LAVES_FORMAT_AUTO,  ///< from the extension when writing, from the content when reading
+  LAVES_FORMAT_VTU,
+  LAVES_FORMAT_GMSH22,
+  LAVES_FORMAT_GMSH41,
+  LAVES_FORMAT_MEDIT,
+  LAVES_FORMAT_TETGEN,  ///< .node, .ele and .face beside one another
+  LAVES_FORMAT_STL,     ///< the boundary only, as are the rest
+  LAVES_FORMAT_OBJ,
+  LAVES_FORMAT_PLY,
+  LAVES_FORMAT_OFF,
+  LAVES_FORMAT_COUNT
+} laves_format;
+
+typedef struct laves_write_options {
+  laves_format format;
+  bool ascii;       ///< text instead of binary, where the format has both
+  int compression;  ///< of VTU: 0 none .. 9 smallest; default 1
+  uint32_t cookie;
+} laves_write_options;
+
+LAVES_API laves_write_options laves_write_options_default(void);
+/// The name used on the command line ("vtu", "gmsh41", ...), or NULL; and its inverse, LAVES_FORMAT_COUNT if unknown.
+LAVES_API const char *laves_format_name(laves_format format);
+LAVES_API laves_format laves_format_from_name(const char *name);
+/// The format that a file name's extension means, or LAVES_FORMAT_COUNT.
+LAVES_API laves_format laves_format_from_path(const char *path);
+
+/// Writes a mesh, whole or not at all: a temporary file beside the target is renamed when complete.
+LAVES_API laves_result laves_mesh_write(laves_context *context, const laves_mesh *mesh, const char *path,
+                                        const laves_write_options *options, laves_error *error);
+
+/// Reads a tetrahedral mesh (VTU, Gmsh 2.2 and 4.1, Medit, TetGen; ASCII and binary) of any program.
+LAVES_API laves_result laves_mesh_read(laves_context *context, const char *path, laves_mesh **mesh, laves_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

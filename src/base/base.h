@@ -1,0 +1,76 @@
+/* What every file may use: assertions, the context's memory, threads and progress, errors.  Knows no other folder. */
+#ifndef LAVES_BASE_BASE_H
+#define LAVES_BASE_BASE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "laves/laves.h"
+
+/* A broken promise inside the library stops debug and validating builds; wrong data from outside never comes here. */
+#ifdef LAVES_VALIDATE
+#include <stdio.h>
+#include <stdlib.h>
+#define LAVES_ASSERT(condition)                                                       \
+  do {                                                                                \
+    if (!(condition)) {                                                               \
+      fprintf(stderr, "%s:%d: broken promise: %s\n", __FILE__, __LINE__, #condition); \
+      abort();                                                                        \
+    }                                                                                 \
+  } while (0)
+#else
+#define LAVES_ASSERT(condition) ((void)sizeof(condition))
+#endif
+
+#define LAVES__COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))
+
+/* ---- memory: every block is counted against the context's limit ---- */
+
+/* NULL when memory is short, over the limit, or count * size overflows. Contents undefined, or zero for _zeroed. */
+void *laves__alloc(laves_context *context, size_t count, size_t size);
+void *laves__alloc_zeroed(laves_context *context, size_t count, size_t size);
+/* Old contents kept; on failure the old block stays valid and NULL is returned. old_count must be the true one. */
+void *laves__realloc(laves_context *context, void *block, size_t old_count, size_t new_count, size_t size);
+/* `count` and `size` must be those of the allocation. NULL is allowed. */
+void laves__free(laves_context *context, void *block, size_t count, size_t size);
+
+/* Makes room for `needed` items in a growing array: doubles, false when memory is short.
+ * `block` is the address of the item pointer. */
+bool laves__grow(laves_context *context, void *block, size_t *capacity, size_t needed, size_t size);
+
+/* ---- errors ---- */
+
+/* Fills error (may be NULL) with result and a printf sentence, and returns result. */
+laves_result laves__fail(laves_error *error, laves_result result, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* The standard sentence for a failed allocation; tells the limit where there is one. */
+laves_result laves__fail_memory(const laves_context *context, laves_error *error);
+laves_result laves__fail_cancelled(laves_error *error);
+
+/* ---- progress ---- */
+
+/* Reports and asks: true when the caller wants to cancel; once cancelled it stays so until laves__progress_reset().
+ * Call only from the thread that entered the library. `phase` is a static string, fraction in 0..1. */
+bool laves__cancelled(laves_context *context, const char *phase, double fraction);
+/* Whether a cancel has been asked for; callable from any thread. */
+bool laves__is_cancelled(const laves_context *context);
+/* Forget an earlier cancel; at the start of each public call. */
+void laves__progress_reset(laves_context *context);
+
+/* ---- threads ---- */
+
+/* Runs fn over [0, count) in blocks of at least min_block, in parallel. Which worker (0 .. laves__workers()-1) gets which
+ * block may vary from run to run, so results must be written to places that depend on the index alone.
+ * Between blocks the calling thread reports progress under `phase` (NULL: silently); after a cancel the remaining blocks
+ * are skipped and the function returns false. */
+typedef void laves__range_fn(void *user, size_t begin, size_t end, int worker);
+bool laves__parallel_for(laves_context *context, const char *phase, size_t count, size_t min_block, laves__range_fn *fn,
+                         void *user);
+int laves__workers(const laves_context *context);
+
+/* ---- time ---- */
+
+double laves__wall_seconds(void); /* monotonic, from an arbitrary start */
+double laves__cpu_seconds(void);  /* of the whole process, all threads */
+
+#endif

@@ -1,0 +1,101 @@
+/* The one parallel loop.
+ *
+ * Blocks are handed out by an atomic counter, so a slow block does not hold the others up; which worker gets which block
+ * differs from run to run, which is why bodies may write only to places that depend on the index. Worker 0 is the calling
+ * thread and the only one that reports progress. OpenMP supplies the threads; the thread sanitizer cannot see into
+ * GNU OpenMP, so builds with LAVES_PTHREADS start POSIX threads instead. */
+#include <stdatomic.h>
+
+#include "base/base.h"
+#include "base/context.h"
+
+#ifdef LAVES_PTHREADS
+#include <pthread.h>
+#include <unistd.h>
+#else
+#include <omp.h>
+#endif
+
+enum { BLOCKS_PER_WORKER = 16, WORKERS_MAX = 256 };
+
+typedef struct loop {
+  laves_context *context;
+  const char *phase;
+  laves__range_fn *fn;
+  void *user;
+  size_t count, block;
+  atomic_size_t next;
+} loop;
+
+int laves__threads_available(int thread_count) {
+#ifdef LAVES_PTHREADS
+  int available = (int)sysconf(_SC_NPROCESSORS_ONLN);
+#else
+  int available = omp_get_num_procs();
+#endif
+  if (thread_count > 0) available = thread_count;
+  if (available < 1) available = 1;
+  return available < WORKERS_MAX ? available : WORKERS_MAX;
+}
+
+int laves__workers(const laves_context *context) { return context->worker_count; }
+
+static void work(loop *l, int worker) {
+  for (;;) {
+    if (laves__is_cancelled(l->context)) return;
+    const size_t begin = atomic_fetch_add(&l->next, l->block);
+    if (begin >= l->count) return;
+    const size_t end = begin + l->block < l->count ? begin + l->block : l->count;
+    if (worker == 0 && laves__cancelled(l->context, l->phase, (double)begin / (double)l->count)) return;
+    l->fn(l->user, begin, end, worker);
+  }
+}
+
+#ifdef LAVES_PTHREADS
+typedef struct helper {
+  loop *l;
+  int worker;
+} helper;
+
+static void *helper_main(void *user) {
+  const helper *h = user;
+  work(h->l, h->worker);
+  return NULL;
+}
+
+static void run(loop *l, int workers) {
+  pthread_t threads[WORKERS_MAX];
+  helper helpers[WORKERS_MAX];
+  int started = 0;
+  for (int i = 1; i < workers; i++) {
+    helpers[i] = (helper){l, i};
+    if (pthread_create(&threads[i], NULL, helper_main, &helpers[i]) != 0) break;
+    started = i;
+  }
+  work(l, 0);
+  for (int i = 1; i <= started; i++) pthread_join(threads[i], NULL);
+}
+#else
+static void run(loop *l, int workers) {
+#pragma omp parallel num_threads(workers)
+  work(l, omp_get_thread_num());
+}
+#endif
+
+bool laves__parallel_for(laves_context *context, const char *phase, size_t count, size_t min_block, laves__range_fn *fn,
+                         void *user) {
+  if (count == 0) return !laves__is_cancelled(context);
+  int workers = context->worker_count;
+  size_t block = count / ((size_t)workers * BLOCKS_PER_WORKER);
+  if (block < min_block) block = min_block;
+  if (block < 1) block = 1;
+  const size_t blocks = (count + block - 1) / block;
+  if (blocks < (size_t)workers) workers = (int)blocks;
+  loop l = {.context = context, .phase = phase, .fn = fn, .user = user, .count = count, .block = block};
+  atomic_init(&l.next, 0);
+  if (workers == 1)
+    work(&l, 0);
+  else
+    run(&l, workers);
+  return !laves__is_cancelled(context);
+}

@@ -1,0 +1,74 @@
+/* The oracle: what classify, snap and improve may ask of a domain, whatever it is made of.
+ *
+ * Coordinates are local to the domain: input coordinates minus `origin`, so that a part a kilometre from the zero point
+ * loses no digits. All functions are pure, read only, safe from many threads, and deterministic. */
+#ifndef LAVES_DOMAIN_ORACLE_H
+#define LAVES_DOMAIN_ORACLE_H
+
+#include "base/base.h"
+#include "base/vec3.h"
+
+typedef enum laves__side { LAVES__OUTSIDE = 1, LAVES__UNDECIDED = 0, LAVES__INSIDE = -1 } laves__side;
+
+/* No hint: any query may start cold. */
+#define LAVES__NO_HINT UINT32_MAX
+
+typedef struct laves__oracle {
+  void *self;
+  laves__vec3 origin; /* input coordinates of the local zero point */
+  laves__box3 bounds; /* local; contains the surface, tightly where it can */
+  bool is_distance;   /* |phi| is the distance to the surface (to 1e-6 relative), so balls of that radius hold none */
+  double volume;      /* exact, or NAN */
+  double area;        /* exact, or NAN */
+
+  /* phi[i] at points[i], negative inside. Points of one call should lie near one another. hints, unless NULL, receives
+   * for each point what `project` can start from (the nearest feature), or LAVES__NO_HINT. */
+  void (*evaluate)(const void *self, size_t count, const laves__vec3 *points, double *phi, uint32_t *hints);
+
+  /* A point of the surface {phi = 0} nearest to `point` (for implicit solids: near it, found by Newton steps along the
+   * gradient), its outward unit normal, and a new hint. *hint may be LAVES__NO_HINT. `reach` is the distance beyond which
+   * the caller has no use for the answer. False when none was found within reach; outputs then undefined. */
+  bool (*project)(const void *self, laves__vec3 point, double reach, uint32_t *hint, laves__vec3 *foot, laves__vec3 *normal);
+
+  /* Which side the whole ball (centre, radius) and the whole box (centre +- half) lie on; either may be used, both contain
+   * the region that the caller means. UNDECIDED is always a correct answer; the others are certain. */
+  laves__side (*side)(const void *self, laves__vec3 centre, double radius, laves__vec3 half);
+
+  /* Tag of the surface at a foot given by `project` and its hint; NULL: no tags. */
+  int32_t (*tag)(const void *self, laves__vec3 foot, uint32_t hint);
+
+  /* Deterministic samples of the surface, spaced by about `spacing`, at most `capacity` of them into points; returns
+   * how many there are. NULL: not available. */
+  size_t (*sample)(const void *self, double spacing, laves__vec3 *points, size_t capacity);
+
+  /* Up to `capacity` thin places, thinnest first; NULL: not available. */
+  size_t (*thin_places)(const void *self, laves_thin_place *places, size_t capacity);
+
+  void (*free)(laves_context *context, void *self);
+} laves__oracle;
+
+/* The public handle. */
+struct laves_domain {
+  laves_context *context;
+  laves__oracle oracle;
+  laves_domain_info info; /* in input coordinates */
+  char format[48];
+  char **tag_names; /* info.tag_count of them, each allocated with its length + 1 */
+};
+
+/* Makers, one file each; they fill oracle, info, format and tags of a zeroed domain. */
+
+/* Triangles as read: polygons already fanned; see surface_input.h. Takes the content of `input` over. */
+struct laves__surface_input;
+laves_result laves__surface_build(laves_context *context, struct laves__surface_input *input, laves_domain *domain,
+                                  laves_error *error);
+
+/* A Lua chunk; `is_expression`: "return " is put in front. `name` for messages; `folder`: where surface leaves are
+ * looked for when their path is relative (NULL: the current folder). */
+laves_result laves__implicit_build(laves_context *context, const char *text, size_t length, bool is_expression, const char *name,
+                                   const char *folder, laves_domain *domain, laves_error *error);
+
+laves_result laves__function_build(laves_context *context, const laves_function *function, laves_domain *domain,
+                                   laves_error *error);
+
+#endif
