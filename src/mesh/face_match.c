@@ -1,0 +1,228 @@
+/* Which faces of tetrahedra coincide.
+ *
+ * The faces are put into buckets by their lowest vertex (a counting sort), and each bucket, about twenty faces in a
+ * usual mesh, is sorted by the other two vertices and the slot, so that equal faces stand side by side. Buckets are
+ * independent and done in parallel. To keep memory low the lowest vertices are taken range by range: a range holds about
+ * a quarter of all faces, and each range costs one more pass over the tets. */
+#include "mesh/face_match.h"
+
+#include <string.h>
+
+enum {
+  RANGES = 4,
+  RANGE_FACES_MIN = 1 << 20, /* a range this small needs 16 MB; more ranges would save nothing worth having */
+  BUCKETS_PER_BLOCK = 256,
+  INSERTION_MAX = 48, /* longer buckets are sorted by heap, so that hostile fans cost n log n */
+  TETS_PER_BLOCK = 1 << 14,
+};
+
+bool laves__tet_usable(const int32_t tet[4], size_t vertex_count) {
+  for (int i = 0; i < 4; i++)
+    if (tet[i] < 0 || (size_t)tet[i] >= vertex_count) return false;
+  return tet[0] != tet[1] && tet[0] != tet[2] && tet[0] != tet[3] && tet[1] != tet[2] && tet[1] != tet[3] && tet[2] != tet[3];
+}
+
+void laves__face_outwards(const int32_t tet[4], int face, int orientation, int32_t corners[3]) {
+  const uint8_t *f = laves__tet_face[face];
+  corners[0] = tet[f[0]];
+  corners[1] = tet[f[orientation < 0 ? 2 : 1]];
+  corners[2] = tet[f[orientation < 0 ? 1 : 2]];
+}
+
+/* ---- sorting of one bucket ---- */
+
+static bool before(const laves__face_use *a, const laves__face_use *b) {
+  if (a->middle != b->middle) return a->middle < b->middle;
+  if (a->high != b->high) return a->high < b->high;
+  return a->slot < b->slot;
+}
+
+static void insertion_sort(laves__face_use *uses, size_t count) {
+  for (size_t i = 1; i < count; i++) {
+    const laves__face_use use = uses[i];
+    size_t j = i;
+    for (; j > 0 && before(&use, &uses[j - 1]); j--) uses[j] = uses[j - 1];
+    uses[j] = use;
+  }
+}
+
+static void sift_down(laves__face_use *uses, size_t root, size_t count) {
+  const laves__face_use use = uses[root];
+  for (;;) {
+    size_t child = 2 * root + 1;
+    if (child >= count) break;
+    if (child + 1 < count && before(&uses[child], &uses[child + 1])) child++;
+    if (!before(&use, &uses[child])) break;
+    uses[root] = uses[child];
+    root = child;
+  }
+  uses[root] = use;
+}
+
+static void heap_sort(laves__face_use *uses, size_t count) {
+  for (size_t i = count / 2; i-- > 0;) sift_down(uses, i, count);
+  for (size_t i = count; i-- > 1;) {
+    const laves__face_use top = uses[0];
+    uses[0] = uses[i];
+    uses[i] = top;
+    sift_down(uses, 0, i);
+  }
+}
+
+/* ---- ranges of lowest vertices ---- */
+
+typedef struct matcher {
+  const int32_t (*tets)[4];
+  size_t tet_count, vertex_count;
+  uint64_t *start; /* [vertex_count + 1] where the bucket of each lowest vertex starts, over all ranges */
+  laves__face_use *uses;
+  uint64_t first; /* start of the range in hand: uses[0] is number `first` */
+  size_t vertex_begin;
+  laves__face_group_fn *fn;
+  void *user;
+} matcher;
+
+/* The four vertices ascending: the lowest vertex of each face is sorted[0], but for the face opposite it. */
+static void sort_corners(const int32_t tet[4], int32_t corner[4], uint8_t index[4]) {
+  for (int i = 0; i < 4; i++) {
+    int j = i;
+    for (; j > 0 && tet[i] < corner[j - 1]; j--) {
+      corner[j] = corner[j - 1];
+      index[j] = index[j - 1];
+    }
+    corner[j] = tet[i];
+    index[j] = (uint8_t)i;
+  }
+}
+
+/* Counts into start[v + 1], then sums up, so that start[v] is where bucket v begins. */
+static void count_buckets(matcher *m) {
+  for (size_t t = 0; t < m->tet_count; t++) {
+    if (!laves__tet_usable(m->tets[t], m->vertex_count)) continue;
+    int32_t corner[4];
+    uint8_t index[4];
+    sort_corners(m->tets[t], corner, index);
+    m->start[corner[0] + 1] += 3;
+    m->start[corner[1] + 1] += 1;
+  }
+  for (size_t v = 0; v < m->vertex_count; v++) m->start[v + 1] += m->start[v];
+}
+
+/* Fills the buckets of [vertex_begin, vertex_end). start[v] is used as the cursor of its bucket and afterwards moved
+ * back by one place: filled to the end it equals the next bucket's start. */
+static void fill_range(matcher *m, size_t vertex_end) {
+  for (size_t t = 0; t < m->tet_count; t++) {
+    if (!laves__tet_usable(m->tets[t], m->vertex_count)) continue;
+    int32_t c[4];
+    uint8_t index[4];
+    sort_corners(m->tets[t], c, index);
+    const uint64_t slot = 4 * (uint64_t)t;
+    if ((size_t)c[0] >= m->vertex_begin && (size_t)c[0] < vertex_end) {
+      laves__face_use *use = &m->uses[m->start[c[0]] - m->first];
+      use[0] = (laves__face_use){(uint32_t)c[1], (uint32_t)c[2], slot + index[3]};
+      use[1] = (laves__face_use){(uint32_t)c[1], (uint32_t)c[3], slot + index[2]};
+      use[2] = (laves__face_use){(uint32_t)c[2], (uint32_t)c[3], slot + index[1]};
+      m->start[c[0]] += 3;
+    }
+    if ((size_t)c[1] >= m->vertex_begin && (size_t)c[1] < vertex_end)
+      m->uses[m->start[c[1]]++ - m->first] = (laves__face_use){(uint32_t)c[2], (uint32_t)c[3], slot + index[0]};
+  }
+  for (size_t v = vertex_end; v > m->vertex_begin; v--) m->start[v - 1] = v - 1 > m->vertex_begin ? m->start[v - 2] : m->first;
+}
+
+/* Sorts buckets and hands out their groups: each bucket belongs to one block, so blocks share nothing. */
+static void group_block(void *user, size_t begin, size_t end, int worker) {
+  const matcher *m = user;
+  for (size_t v = m->vertex_begin + begin; v < m->vertex_begin + end; v++) {
+    laves__face_use *uses = m->uses + (m->start[v] - m->first);
+    const size_t count = m->start[v + 1] - m->start[v];
+    if (count <= INSERTION_MAX)
+      insertion_sort(uses, count);
+    else
+      heap_sort(uses, count);
+    for (size_t i = 0, j; i < count; i = j) {
+      for (j = i + 1; j < count && uses[j].middle == uses[i].middle && uses[j].high == uses[i].high;) j++;
+      m->fn(m->user, (uint32_t)v, uses + i, j - i, worker);
+    }
+  }
+}
+
+/* The end of the range that begins at `begin`: as many buckets as fit into `capacity`, at least one. */
+static size_t range_end(const matcher *m, size_t begin, size_t capacity) {
+  size_t end = begin + 1;
+  while (end < m->vertex_count && m->start[end + 1] - m->start[begin] <= capacity) end++;
+  return end;
+}
+
+/* The faces in the largest range. */
+static size_t largest_range(const matcher *m, size_t capacity) {
+  size_t largest = 0;
+  for (size_t begin = 0, end; begin < m->vertex_count; begin = end) {
+    end = range_end(m, begin, capacity);
+    const size_t faces = m->start[end] - m->start[begin];
+    if (faces > largest) largest = faces;
+  }
+  return largest;
+}
+
+laves_result laves__match_faces(laves_context *context, const char *phase, const int32_t (*tets)[4], size_t tet_count,
+                                size_t vertex_count, laves__face_group_fn *fn, void *user, laves_error *error) {
+  laves_result result = LAVES_OK;
+  matcher m = {.tets = tets, .tet_count = tet_count, .vertex_count = vertex_count, .fn = fn, .user = user};
+  size_t largest = 0;
+  m.start = laves__alloc_zeroed(context, vertex_count + 1, sizeof *m.start);
+  if (!m.start) return laves__fail_memory(context, error);
+  count_buckets(&m);
+  size_t capacity = m.start[vertex_count] / RANGES + 1;
+  if (capacity < RANGE_FACES_MIN) capacity = RANGE_FACES_MIN;
+  largest = largest_range(&m, capacity);
+  m.uses = laves__alloc(context, largest, sizeof *m.uses);
+  if (!m.uses) {
+    result = laves__fail_memory(context, error);
+    goto clean_up;
+  }
+  for (size_t end; m.vertex_begin < vertex_count; m.vertex_begin = end) {
+    end = range_end(&m, m.vertex_begin, capacity);
+    m.first = m.start[m.vertex_begin];
+    fill_range(&m, end);
+    if (!laves__parallel_for(context, phase, end - m.vertex_begin, BUCKETS_PER_BLOCK, group_block, &m)) {
+      result = laves__fail_cancelled(error);
+      goto clean_up;
+    }
+  }
+clean_up:
+  laves__free(context, m.uses, largest, sizeof *m.uses);
+  laves__free(context, m.start, vertex_count + 1, sizeof *m.start);
+  return result;
+}
+
+/* ---- boundary ---- */
+
+static void mark_single(void *user, uint32_t low, const laves__face_use *uses, size_t count, int worker) {
+  uint8_t *single = user;
+  (void)low;
+  (void)worker;
+  if (count == 1) single[uses[0].slot] = 1;
+}
+
+laves_result laves__boundary_slots(laves_context *context, const char *phase, const int32_t (*tets)[4], size_t tet_count,
+                                   size_t vertex_count, uint64_t **slots, size_t *count, laves_error *error) {
+  *slots = NULL;
+  *count = 0;
+  uint8_t *single = laves__alloc_zeroed(context, tet_count, 4);
+  if (!single) return laves__fail_memory(context, error);
+  laves_result result = laves__match_faces(context, phase, tets, tet_count, vertex_count, mark_single, single, error);
+  if (result != LAVES_OK) goto clean_up;
+  for (size_t i = 0; i < 4 * tet_count; i++) *count += single[i];
+  *slots = laves__alloc(context, *count, sizeof **slots);
+  if (!*slots) {
+    result = laves__fail_memory(context, error);
+    goto clean_up;
+  }
+  size_t filled = 0;
+  for (size_t i = 0; i < 4 * tet_count; i++)
+    if (single[i]) (*slots)[filled++] = i;
+clean_up:
+  laves__free(context, single, tet_count, 4);
+  return result;
+}
