@@ -1,0 +1,292 @@
+/* The triangles of a mesh that can be seen, with their colours.
+ *
+ * Input: a mesh and, perhaps, a cutting plane. Output: the faces that exactly one of the kept tetrahedra owns.
+ * Whole tetrahedra are kept or dropped, never cut, so that the picture of a section shows the elements themselves.
+ *
+ * A face can only be exposed when its three corners all lie on the boundary or on a dropped tetrahedron. Such vertices
+ * are marked first, and only faces between three marked ones are matched in a hash table, which therefore grows with
+ * the surface and not with the volume. */
+#include "scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Faces of a positive tetrahedron, outwards; face i is opposite corner i. */
+static const int tet_face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+enum { dropped_side = 1, near_face = 2 };
+
+/* A face by its sorted corners; `owner` is 4 * tet + corner of the kept tetrahedron, `kept` and `all` count owners. */
+typedef struct face_entry {
+  int32_t key[3];
+  uint8_t kept, all;
+  int64_t owner;
+} face_entry;
+
+typedef struct face_table {
+  face_entry *entries;
+  size_t mask, count;
+} face_table;
+
+static bool table_reserve(face_table *table, size_t capacity) {
+  size_t size = 1024;
+  while (size < capacity) {
+    size *= 2;
+  }
+  table->entries = calloc(size, sizeof *table->entries);
+  table->mask = size - 1;
+  table->count = 0;
+  return table->entries != NULL;
+}
+
+static face_entry *table_find(face_table *table, const int32_t key[3]) {
+  uint64_t hash = (uint32_t)key[0] * UINT64_C(0x9e3779b97f4a7c15);
+  hash = (hash ^ (uint32_t)key[1]) * UINT64_C(0xbf58476d1ce4e5b9);
+  hash = (hash ^ (uint32_t)key[2]) * UINT64_C(0x94d049bb133111eb);
+  size_t slot = (size_t)(hash >> 20) & table->mask;
+  while (table->entries[slot].all > 0 && memcmp(table->entries[slot].key, key, sizeof table->entries[slot].key) != 0) {
+    slot = (slot + 1) & table->mask;
+  }
+  return &table->entries[slot];
+}
+
+static bool table_grow(face_table *table) {
+  face_table bigger;
+  if (!table_reserve(&bigger, 4 * (table->mask + 1))) {
+    return false;
+  }
+  for (size_t i = 0; i <= table->mask; i++) {
+    if (table->entries[i].all > 0) {
+      *table_find(&bigger, table->entries[i].key) = table->entries[i];
+    }
+  }
+  bigger.count = table->count;
+  free(table->entries);
+  *table = bigger;
+  return true;
+}
+
+static void sort3(int32_t v[3]) {
+  for (int pass = 0; pass < 2; pass++) {
+    for (int i = 0; i < 2; i++) {
+      if (v[i] > v[i + 1]) {
+        int32_t swap = v[i];
+        v[i] = v[i + 1];
+        v[i + 1] = swap;
+      }
+    }
+  }
+}
+
+static bool table_add(face_table *table, const int32_t corners[3], int64_t owner, bool kept) {
+  int32_t key[3] = {corners[0], corners[1], corners[2]};
+  sort3(key);
+  if (2 * table->count > table->mask && !table_grow(table)) {
+    return false;
+  }
+  face_entry *entry = table_find(table, key);
+  if (entry->all == 0) {
+    memcpy(entry->key, key, sizeof entry->key);
+    table->count++;
+  }
+  entry->all += entry->all < UINT8_MAX;
+  if (kept) {
+    entry->kept += entry->kept < UINT8_MAX;
+    entry->owner = owner;
+  }
+  return true;
+}
+
+/* Whether a tetrahedron has every corner on the kept side; `marks` of laves_mesh_points. */
+static bool tet_is_kept(const int32_t tet[4], const uint8_t *marks) {
+  return !((marks[tet[0]] | marks[tet[1]] | marks[tet[2]] | marks[tet[3]]) & dropped_side);
+}
+
+static uint8_t *mark_vertices(const laves_mesh *mesh, const scene_options *options) {
+  size_t vertex_count = laves_mesh_vertex_count(mesh), tet_count = laves_mesh_tet_count(mesh);
+  const double *points = laves_mesh_points(mesh);
+  const int32_t *tets = laves_mesh_tets(mesh), *faces = laves_mesh_faces(mesh);
+  uint8_t *marks = calloc(vertex_count + 1, 1);
+  if (!marks) {
+    return NULL;
+  }
+  for (size_t i = 0; options->cut && i < vertex_count; i++) {
+    const double *p = points + 3 * i, *plane = options->plane;
+    marks[i] = plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] > plane[3] ? dropped_side : 0;
+  }
+  for (size_t i = 0; i < 3 * laves_mesh_face_count(mesh); i++) {
+    marks[faces[i]] |= near_face;
+  }
+  for (size_t i = 0; options->cut && i < tet_count; i++) {
+    if (!tet_is_kept(tets + 4 * i, marks)) {
+      for (int k = 0; k < 4; k++) {
+        marks[tets[4 * i + (size_t)k]] |= near_face;
+      }
+    }
+  }
+  return marks;
+}
+
+/* Matches the faces that may be exposed. */
+static bool collect_faces(const laves_mesh *mesh, const uint8_t *marks, face_table *table, size_t *kept_tets) {
+  const int32_t *tets = laves_mesh_tets(mesh);
+  size_t tet_count = laves_mesh_tet_count(mesh);
+  for (size_t i = 0; i < tet_count; i++) {
+    const int32_t *tet = tets + 4 * i;
+    bool kept = tet_is_kept(tet, marks);
+    *kept_tets += kept;
+    for (int f = 0; f < 4; f++) {
+      int32_t corners[3] = {tet[tet_face[f][0]], tet[tet_face[f][1]], tet[tet_face[f][2]]};
+      int common = marks[corners[0]] & marks[corners[1]] & marks[corners[2]];
+      int any = marks[corners[0]] | marks[corners[1]] | marks[corners[2]];
+      if (common & near_face && !(any & dropped_side) && !table_add(table, corners, 4 * (int64_t)i + f, kept)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+static void subtract(const double a[3], const double b[3], double out[3]) {
+  for (int i = 0; i < 3; i++) {
+    out[i] = a[i] - b[i];
+  }
+}
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* How near a tetrahedron's dihedral angles are to the tiling's: 1 when all lie in [60, 75] degrees, 0 when it is flat. */
+static double dihedral_score(double p[4][3]) {
+  double normals[4][3];
+  for (int f = 0; f < 4; f++) {
+    double u[3], v[3];
+    subtract(p[tet_face[f][1]], p[tet_face[f][0]], u);
+    subtract(p[tet_face[f][2]], p[tet_face[f][0]], v);
+    cross(u, v, normals[f]);
+  }
+  double smallest = 180, largest = 0;
+  for (int a = 0; a < 4; a++) {
+    for (int b = a + 1; b < 4; b++) {
+      double c = -dot(normals[a], normals[b]) / sqrt(dot(normals[a], normals[a]) * dot(normals[b], normals[b]));
+      double angle = acos(fmax(-1, fmin(1, c))) * 180 / 3.14159265358979323846;
+      smallest = fmin(smallest, angle);
+      largest = fmax(largest, angle);
+    }
+  }
+  return fmax(0, fmin(1, fmin(smallest / 60, (180 - largest) / 105)));
+}
+
+/* sqrt(2) 6V / rms(edge)^3: 1 for the regular tetrahedron. */
+static double volume_length(double p[4][3]) {
+  double squares = 0, edge[3], u[3], v[3], w[3], n[3];
+  for (int a = 0; a < 4; a++) {
+    for (int b = a + 1; b < 4; b++) {
+      subtract(p[b], p[a], edge);
+      squares += dot(edge, edge) / 6;
+    }
+  }
+  subtract(p[1], p[0], u);
+  subtract(p[2], p[0], v);
+  subtract(p[3], p[0], w);
+  cross(u, v, n);
+  return fmax(0, sqrt(2) * dot(n, w) / pow(squares, 1.5));
+}
+
+/* sRGB to linear light. */
+static void linear_colour(uint32_t rgb, float out[3]) {
+  for (int i = 0; i < 3; i++) {
+    double s = (rgb >> (16 - 8 * i) & 255) / 255.0;
+    out[i] = (float)(s <= 0.04045 ? s / 12.92 : pow((s + 0.055) / 1.055, 2.4));
+  }
+}
+
+/* Red for 0 through amber to blue for 1. */
+static void score_colour(double score, float out[3]) {
+  static const struct {
+    double score;
+    uint32_t rgb;
+  } stops[] = {{0, 0x8c1c3a}, {0.3, 0xd9482f}, {0.5, 0xf2a541}, {0.7, 0xf4e3a1}, {0.85, 0x8cc5b4}, {1, 0x3d7ea6}};
+  int k = 0;
+  while (k < 4 && score > stops[k + 1].score) {
+    k++;
+  }
+  double t = fmax(0, fmin(1, (score - stops[k].score) / (stops[k + 1].score - stops[k].score)));
+  float low[3], high[3];
+  linear_colour(stops[k].rgb, low);
+  linear_colour(stops[k + 1].rgb, high);
+  for (int i = 0; i < 3; i++) {
+    out[i] = (float)(low[i] + t * (high[i] - low[i]));
+  }
+}
+
+/* Colours of the surface and of the inside; the inside of further regions takes the further ones. */
+static void class_colour(bool boundary, int32_t region, float out[3]) {
+  static const uint32_t inside[] = {0xffd070, 0x9fc66d, 0xe58f7b, 0xb79ad6, 0x6fc3c0, 0xd9b48f};
+  enum { inside_count = sizeof inside / sizeof inside[0] };
+  uint32_t row = (uint32_t)(region - 1) % inside_count;
+  linear_colour(boundary ? 0x93bde3 : inside[row], out);
+}
+
+static void fill_face(const laves_mesh *mesh, const face_entry *entry, scene_colour colour, scene_face *out) {
+  const double *points = laves_mesh_points(mesh);
+  const int32_t *regions = laves_mesh_regions(mesh);
+  int64_t tet = entry->owner / 4;
+  int corner = (int)(entry->owner % 4);
+  double p[4][3], u[3], v[3], inwards[3];
+  for (int k = 0; k < 4; k++) {
+    memcpy(p[k], points + 3 * laves_mesh_tets(mesh)[4 * tet + k], sizeof p[k]);
+  }
+  for (int k = 0; k < 3; k++) {
+    memcpy(out->points[k], p[tet_face[corner][k]], sizeof p[k]);
+  }
+  subtract(out->points[1], out->points[0], u);
+  subtract(out->points[2], out->points[0], v);
+  subtract(p[corner], out->points[0], inwards);
+  cross(u, v, out->normal);
+  double length = sqrt(dot(out->normal, out->normal));
+  double scale = length > 0 ? (dot(out->normal, inwards) > 0 ? -1 : 1) / length : 0;
+  for (int i = 0; i < 3; i++) {
+    out->normal[i] *= scale;
+  }
+  if (colour == SCENE_CLASS) {
+    class_colour(entry->all == 1, regions ? regions[tet] : 1, out->colour);
+  } else {
+    score_colour(colour == SCENE_DIHEDRAL ? dihedral_score(p) : volume_length(p), out->colour);
+  }
+}
+
+bool scene_build(const laves_mesh *mesh, const scene_options *options, scene *out) {
+  bool done = false;
+  face_table table = {0};
+  *out = (scene){0};
+  uint8_t *marks = mark_vertices(mesh, options);
+  if (!marks || !table_reserve(&table, 4 * laves_mesh_face_count(mesh)) || !collect_faces(mesh, marks, &table, &out->kept_tets)) {
+    goto done;
+  }
+  out->faces = malloc((table.count + 1) * sizeof *out->faces);
+  if (!out->faces) {
+    goto done;
+  }
+  for (size_t i = 0; i <= table.mask; i++) {
+    if (table.entries[i].kept == 1) {
+      fill_face(mesh, &table.entries[i], options->colour, &out->faces[out->face_count++]);
+    }
+  }
+  done = true;
+done:
+  free(marks);
+  free(table.entries);
+  return done;
+}
+
+void scene_free(scene *subject) {
+  free(subject->faces);
+  *subject = (scene){0};
+}

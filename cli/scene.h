@@ -1,0 +1,32 @@
+/* What of a mesh is drawn: the triangles that can be seen from outside, each with its colour. */
+#ifndef LAVES_CLI_SCENE_H
+#define LAVES_CLI_SCENE_H
+
+#include <laves/laves.h>
+
+typedef enum scene_colour { SCENE_CLASS, SCENE_DIHEDRAL, SCENE_QUALITY } scene_colour;
+
+typedef struct scene_options {
+  bool cut;
+  double plane[4];  ///< with `cut`: tetrahedra with every corner at a x + b y + c z <= d are kept
+  scene_colour colour;
+} scene_options;
+
+/// One triangle, seen from the side that `normal` points to.
+typedef struct scene_face {
+  double points[3][3];
+  double normal[3];  ///< unit length, out of the solid
+  float colour[3];   ///< linear light, 0..1
+} scene_face;
+
+typedef struct scene {
+  scene_face *faces;
+  size_t face_count;
+  size_t kept_tets;
+} scene;
+
+/// Returns false when memory is short. `out` is freed with scene_free() in any case.
+bool scene_build(const laves_mesh *mesh, const scene_options *options, scene *out);
+void scene_free(scene *subject);
+
+#endif
