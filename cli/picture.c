@@ -9,7 +9,7 @@
  *
  * All light is added up in linear space and only turned into sRGB at the end.
  *
- * Source of the occlusion: Mittring, "Finding next gen: CryEngine 2", 2007, section 8.5, in the variant with normals and
+ * Source of the occlusion: [mittring2007], screen-space ambient occlusion, in the variant with normals and
  * a spiral of samples; the constants are ours. */
 #include "picture.h"
 

@@ -3,7 +3,7 @@
  * Each row is stored by the one of the five filters whose bytes, read as signed, have the smallest sum of magnitudes;
  * the heuristic is the one that the standard recommends and suits flat shading with thin lines well.
  *
- * Source: ISO/IEC 15948:2004, Portable Network Graphics, sections 5 (chunks), 9 (filters) and 12.8 (choice of filter). */
+ * Source: [iso15948], sections 5 (chunks), 9 (filters) and 12.8 (choice of filter). */
 #include "png.h"
 
 #include <errno.h>

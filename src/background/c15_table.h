@@ -12,7 +12,7 @@
  * lies in the owner or one cell further along x, y or z. Neighbours and stars may lie one cell away in any direction.
  *
  * The table is made by tools/make_tiling with Qhull and rebuilt and compared by a test.
- * Source: [labelle-paper], section 3.2; docs/references.bib. */
+ * Source: [isotropic-tcp], section 3.2; docs/references.bib. */
 #ifndef LAVES_BACKGROUND_C15_TABLE_H
 #define LAVES_BACKGROUND_C15_TABLE_H
 
