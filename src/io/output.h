@@ -1,0 +1,50 @@
+/* A file being written: it appears whole or not at all.
+ *
+ *   laves__output_open -> laves__output_bytes, _items ... -> laves__output_complete -> laves__output_publish
+ *
+ * Bytes go to a temporary file in the target's folder, which publishing renames to the target. Targets that are not regular
+ * files (devices, pipes) and open descriptors (/dev/stdout) are written directly. The first failure sticks: later calls do
+ * nothing and the last one returns it, so writers need not look in between. laves__output_discard() ends it at any point. */
+#ifndef LAVES_IO_OUTPUT_H
+#define LAVES_IO_OUTPUT_H
+
+#include <limits.h>
+
+#include "base/base.h"
+
+typedef struct laves__output {
+  laves_context *context;
+  laves_error error; /* the first failure; LAVES_OK while there is none */
+  int file;          /* -1: none open */
+  bool direct;       /* no temporary file */
+  char *buffer;
+  size_t used;
+  uint64_t written; /* bytes so far, those in the buffer too */
+  double expected;  /* about how many bytes there will be, for progress; set by the writer */
+  double prepared;  /* the fraction of the work done before the first byte; set by the writer */
+  char target[PATH_MAX];
+  char temporary[PATH_MAX]; /* empty: none on disk */
+} laves__output;
+
+/* Zeroes and opens; on failure the result is in out->error too and the other calls stay harmless. */
+laves_result laves__output_open(laves__output *out, laves_context *context, const char *path);
+void laves__output_bytes(laves__output *out, const void *bytes, size_t count);
+void laves__output_printf(laves__output *out, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Writes the form of items [begin, end) at `bytes` and returns how many bytes that took. Called from many threads. */
+typedef size_t laves__output_items_fn(const void *user, size_t begin, size_t end, char *bytes);
+/* Formats items 0 .. count-1 in parallel blocks and writes them in order; each takes at most item_bytes. */
+void laves__output_items(laves__output *out, size_t count, size_t item_bytes, laves__output_items_fn *fn, const void *user);
+
+/* Records a failure found by the writer itself; a printf sentence. */
+void laves__output_fail(laves__output *out, laves_result result, const char *format, ...) __attribute__((format(printf, 3, 4)));
+void laves__output_fail_memory(laves__output *out);
+
+/* Flushes and closes the temporary file. */
+laves_result laves__output_complete(laves__output *out);
+/* Renames it to the target. */
+laves_result laves__output_publish(laves__output *out);
+/* Frees everything and removes what is left of an unpublished file; after publishing only frees. */
+void laves__output_discard(laves__output *out);
+
+#endif
