@@ -1,0 +1,339 @@
+/* VTK's XML file for unstructured grids: Float64 points, Int32 connectivity, offsets of 32 bits where they suffice, cell
+ * data "region" and "class" (0: tile of the lattice, 1: boundary layer, 2: boundary triangle).
+ *
+ * Tetrahedra come first. When the mesh carries face tags, its boundary triangles follow as cells of their own with the tag
+ * as their "region", so that tags survive; without tags the file holds tetrahedra only.
+ *
+ * Binary arrays are appended as raw bytes behind the XML, each after a header of UInt64: its byte count, or for compressed
+ * arrays the number of blocks, their size, the size of the last (0 when full) and every block's compressed size. The XML
+ * names the positions, so compressed arrays are made, in parallel, before the first byte is written.
+ * Source: VTK file formats, https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html */
+#include <string.h>
+#include <zlib.h>
+
+#include "io/write_mesh.h"
+#include "io/write_text.h"
+
+enum { CELL_TRIANGLE = 5, CELL_TET = 10 };
+enum { CLASS_TILE = 0, CLASS_LAYER = 1, CLASS_FACE = 2 };
+
+typedef struct grid {
+  const laves_mesh *mesh;
+  size_t faces, cells; /* triangles that are cells; all cells */
+} grid;
+
+/* ---- arrays, item by item; an item is one number, for points one coordinate ---- */
+
+static double coordinate(const grid *g, size_t i) { return (&g->mesh->points[0].x)[i]; }
+
+static int64_t corner(const grid *g, size_t i) {
+  const size_t tet_corners = 4 * g->mesh->tet_count;
+  return i < tet_corners ? g->mesh->tets[i / 4][i % 4] : g->mesh->faces[(i - tet_corners) / 3][(i - tet_corners) % 3];
+}
+
+static int64_t offset(const grid *g, size_t i) {
+  const size_t tets = g->mesh->tet_count;
+  return i < tets ? 4 * ((int64_t)i + 1) : 4 * (int64_t)tets + 3 * ((int64_t)(i - tets) + 1);
+}
+
+static int64_t type(const grid *g, size_t i) { return i < g->mesh->tet_count ? CELL_TET : CELL_TRIANGLE; }
+
+static int64_t region(const grid *g, size_t i) {
+  const size_t tets = g->mesh->tet_count;
+  if (i >= tets) return g->mesh->face_tags[i - tets];
+  return g->mesh->regions ? g->mesh->regions[i] : 1;
+}
+
+static int64_t class(const grid *g, size_t i) {
+  if (i >= g->mesh->tet_count) return CLASS_FACE;
+  return i < g->mesh->lattice_tet_count ? CLASS_TILE : CLASS_LAYER;
+}
+
+typedef enum kind { FLOAT64, INT32, INT64, UINT8 } kind;
+static const char *const kind_names[] = {"Float64", "Int32", "Int64", "UInt8"};
+static const size_t kind_bytes[] = {8, 4, 8, 1};
+
+typedef struct array {
+  const grid *grid;
+  const char *name;
+  kind kind;
+  int components;
+  size_t count;
+  int64_t (*integer)(const grid *g, size_t i); /* NULL: coordinates */
+  /* Compressed form; unused otherwise. */
+  size_t block_count;
+  uint64_t *header;
+  uint8_t **blocks;
+} array;
+
+enum { POINTS, CONNECTIVITY, OFFSETS, TYPES, REGION, CLASS, ARRAY_COUNT };
+
+static void describe_arrays(const grid *g, array arrays[ARRAY_COUNT]) {
+  const size_t corners = 4 * g->mesh->tet_count + 3 * g->faces;
+  const kind offset_kind = corners <= INT32_MAX ? INT32 : INT64;
+  arrays[POINTS] = (array){g, "Points", FLOAT64, 3, 3 * g->mesh->vertex_count, NULL, 0, NULL, NULL};
+  arrays[CONNECTIVITY] = (array){g, "connectivity", INT32, 1, corners, corner, 0, NULL, NULL};
+  arrays[OFFSETS] = (array){g, "offsets", offset_kind, 1, g->cells, offset, 0, NULL, NULL};
+  arrays[TYPES] = (array){g, "types", UINT8, 1, g->cells, type, 0, NULL, NULL};
+  arrays[REGION] = (array){g, "region", INT32, 1, g->cells, region, 0, NULL, NULL};
+  arrays[CLASS] = (array){g, "class", UINT8, 1, g->cells, class, 0, NULL, NULL};
+}
+
+static uint64_t raw_bytes(const array *a) { return (uint64_t)a->count * kind_bytes[a->kind]; }
+
+/* ---- raw ---- */
+
+static size_t pack(const void *user, size_t begin, size_t end, char *bytes) {
+  const array *a = user;
+  const size_t size = kind_bytes[a->kind];
+  for (size_t i = begin; i < end; i++, bytes += size) {
+    if (a->kind == FLOAT64) {
+      const double value = coordinate(a->grid, i);
+      memcpy(bytes, &value, sizeof value);
+    } else {
+      const int64_t value = a->integer(a->grid, i);
+      memcpy(bytes, &value, size); /* the low bytes come first */
+    }
+  }
+  return (end - begin) * size;
+}
+
+/* The part of an array that stands in memory as the file wants it: [0, *count) items. */
+static const void *in_memory(const array *a, size_t *count) {
+  const laves_mesh *mesh = a->grid->mesh;
+  if (a->kind == FLOAT64) {
+    *count = a->count;
+    return mesh->points;
+  }
+  if (a->integer == corner) {
+    *count = 4 * mesh->tet_count;
+    return mesh->tets;
+  }
+  *count = 0;
+  return NULL;
+}
+
+typedef struct rest {
+  const array *array;
+  size_t first;
+} rest;
+
+static size_t pack_rest(const void *user, size_t begin, size_t end, char *bytes) {
+  const rest *r = user;
+  return pack(r->array, r->first + begin, r->first + end, bytes);
+}
+
+static void write_raw(laves__output *out, const array *a) {
+  const uint64_t bytes = raw_bytes(a);
+  laves__output_bytes(out, &bytes, sizeof bytes);
+  rest r = {a, 0};
+  const void *ready = in_memory(a, &r.first);
+  laves__output_bytes(out, ready, r.first * kind_bytes[a->kind]);
+  laves__output_items(out, a->count - r.first, kind_bytes[a->kind], pack_rest, &r);
+}
+
+/* ---- compressed ---- */
+
+/* Bytes of a block before compression: large enough that its header and dictionary cost little, small enough to share the
+ * work out. A multiple of every item's size. */
+enum { BLOCK_BYTES = 1 << 18 };
+
+static voidpf zlib_allocate(voidpf user, uInt count, uInt size) {
+  /* zlib does not say the size when freeing, so it is kept in front. */
+  const size_t bytes = (size_t)count * size + 16;
+  char *block = laves__alloc(user, bytes, 1);
+  if (!block) return Z_NULL;
+  memcpy(block, &bytes, sizeof bytes);
+  return block + 16;
+}
+
+static void zlib_free(voidpf user, voidpf address) {
+  char *block = (char *)address - 16;
+  size_t bytes;
+  memcpy(&bytes, block, sizeof bytes);
+  laves__free(user, block, bytes, 1);
+}
+
+typedef struct compression {
+  laves_context *context;
+  array *array;
+  size_t first; /* block */
+  int level;
+} compression;
+
+/* Compresses one block of the array; leaves blocks[i] NULL when memory is short. */
+static void compress_block(const compression *c, z_stream *stream, size_t i, char *raw, char *packed, size_t capacity) {
+  array *a = c->array;
+  const size_t per_block = BLOCK_BYTES / kind_bytes[a->kind];
+  const size_t begin = i * per_block, end = begin + per_block < a->count ? begin + per_block : a->count;
+  stream->next_in = (Bytef *)raw;
+  stream->avail_in = (uInt)pack(a, begin, end, raw);
+  stream->next_out = (Bytef *)packed;
+  stream->avail_out = (uInt)capacity;
+  if (deflateReset(stream) != Z_OK || deflate(stream, Z_FINISH) != Z_STREAM_END) return;
+  const size_t length = stream->total_out;
+  a->blocks[i] = laves__alloc(c->context, length, 1);
+  if (!a->blocks[i]) return;
+  memcpy(a->blocks[i], packed, length);
+  a->header[3 + i] = length;
+}
+
+/* Every block and its length have one writer: the thread that got the block's index. */
+static void compress_range(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const compression *c = user;
+  z_stream stream = {.zalloc = zlib_allocate, .zfree = zlib_free, .opaque = c->context};
+  if (deflateInit(&stream, c->level) != Z_OK) return;
+  const size_t capacity = deflateBound(&stream, BLOCK_BYTES);
+  char *scratch = laves__alloc(c->context, BLOCK_BYTES + capacity, 1);
+  for (size_t i = begin; i < end && scratch; i++)
+    compress_block(c, &stream, c->first + i, scratch, scratch + BLOCK_BYTES, capacity);
+  laves__free(c->context, scratch, BLOCK_BYTES + capacity, 1);
+  deflateEnd(&stream);
+}
+
+static laves_result compress_array(laves_context *context, array *a, int level, double progress, double progress_step,
+                                   laves_error *error) {
+  const uint64_t bytes = raw_bytes(a);
+  a->block_count = (size_t)((bytes + BLOCK_BYTES - 1) / BLOCK_BYTES);
+  a->header = laves__alloc_zeroed(context, 3 + a->block_count, sizeof *a->header);
+  a->blocks = laves__alloc_zeroed(context, a->block_count, sizeof *a->blocks);
+  if (!a->header || !a->blocks) return laves__fail_memory(context, error);
+  a->header[0] = a->block_count;
+  a->header[1] = BLOCK_BYTES;
+  a->header[2] = bytes % BLOCK_BYTES;
+  const size_t wave = (size_t)laves__workers(context) * 16; /* between two questions whether to cancel; about 50 ms */
+  for (size_t i = 0; i < a->block_count; i += wave) {
+    const size_t count = a->block_count - i < wave ? a->block_count - i : wave;
+    compression c = {context, a, i, level};
+    const double done = progress + progress_step * (double)i / (double)a->block_count;
+    if (laves__cancelled(context, "write", done) || !laves__parallel_for(context, NULL, count, 4, compress_range, &c))
+      return laves__fail_cancelled(error);
+  }
+  for (size_t i = 0; i < a->block_count; i++)
+    if (!a->blocks[i]) return laves__fail_memory(context, error);
+  return LAVES_OK;
+}
+
+static uint64_t compressed_bytes(const array *a) {
+  uint64_t sum = (3 + a->block_count) * sizeof *a->header;
+  for (size_t i = 0; i < a->block_count; i++) sum += a->header[3 + i];
+  return sum;
+}
+
+static void write_compressed(laves__output *out, const array *a) {
+  laves__output_bytes(out, a->header, (3 + a->block_count) * sizeof *a->header);
+  for (size_t i = 0; i < a->block_count; i++) laves__output_bytes(out, a->blocks[i], a->header[3 + i]);
+}
+
+static void free_compressed(laves_context *context, array *a) {
+  for (size_t i = 0; i < a->block_count && a->blocks; i++) laves__free(context, a->blocks[i], a->header[3 + i], 1);
+  laves__free(context, a->blocks, a->block_count, sizeof *a->blocks);
+  laves__free(context, a->header, 3 + a->block_count, sizeof *a->header);
+}
+
+/* ---- text ---- */
+
+static size_t put_coordinates(const void *user, size_t begin, size_t end, char *bytes) {
+  const array *a = user;
+  char *text = bytes;
+  for (size_t i = begin; i < end; i++) {
+    text = laves__put_double(text, coordinate(a->grid, i));
+    *text++ = i % 3 == 2 ? '\n' : ' ';
+  }
+  return (size_t)(text - bytes);
+}
+
+static size_t put_integers(const void *user, size_t begin, size_t end, char *bytes) {
+  const array *a = user;
+  char *text = bytes;
+  for (size_t i = begin; i < end; i++) {
+    text = laves__put_integer(text, a->integer(a->grid, i));
+    *text++ = i % 12 == 11 ? '\n' : ' ';
+  }
+  return (size_t)(text - bytes);
+}
+
+static void write_inline(laves__output *out, const array *a) {
+  if (a->kind == FLOAT64)
+    laves__output_items(out, a->count, LAVES__DOUBLE_TEXT_MAX + 1, put_coordinates, a);
+  else
+    laves__output_items(out, a->count, LAVES__INTEGER_TEXT_MAX + 1, put_integers, a);
+}
+
+/* ---- the file ---- */
+
+typedef enum form { TEXT, RAW, COMPRESSED } form;
+
+/* One element of the XML; *position is where its data starts behind the XML. */
+static void write_element(laves__output *out, const array *a, form f, uint64_t *position) {
+  laves__output_printf(out, "        <DataArray type=\"%s\" Name=\"%s\"", kind_names[a->kind], a->name);
+  if (a->components > 1) laves__output_printf(out, " NumberOfComponents=\"%d\"", a->components);
+  if (f == TEXT) {
+    laves__output_printf(out, " format=\"ascii\">\n");
+    write_inline(out, a);
+    laves__output_printf(out, "\n        </DataArray>\n");
+    return;
+  }
+  laves__output_printf(out, " format=\"appended\" offset=\"%llu\"/>\n", (unsigned long long)*position);
+  *position += f == RAW ? sizeof(uint64_t) + raw_bytes(a) : compressed_bytes(a);
+}
+
+static void write_xml(laves__output *out, const grid *g, const array *arrays, form f) {
+  laves__output_printf(
+      out,
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"%s>\n"
+      "  <UnstructuredGrid>\n"
+      "    <Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n"
+      "      <Points>\n",
+      f == COMPRESSED ? " compressor=\"vtkZLibDataCompressor\"" : "", g->mesh->vertex_count, g->cells);
+  uint64_t position = 0;
+  write_element(out, &arrays[POINTS], f, &position);
+  laves__output_printf(out, "      </Points>\n      <Cells>\n");
+  write_element(out, &arrays[CONNECTIVITY], f, &position);
+  write_element(out, &arrays[OFFSETS], f, &position);
+  write_element(out, &arrays[TYPES], f, &position);
+  laves__output_printf(out, "      </Cells>\n      <CellData Scalars=\"region\">\n");
+  write_element(out, &arrays[REGION], f, &position);
+  write_element(out, &arrays[CLASS], f, &position);
+  laves__output_printf(out, "      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n");
+}
+
+static void write_appended(laves__output *out, const array *arrays, form f) {
+  laves__output_printf(out, "  <AppendedData encoding=\"raw\">\n_");
+  for (int i = 0; i < ARRAY_COUNT; i++)
+    if (f == RAW)
+      write_raw(out, &arrays[i]);
+    else
+      write_compressed(out, &arrays[i]);
+  laves__output_printf(out, "\n  </AppendedData>\n");
+}
+
+/* Compression takes nearly all of the time; writing the result the rest. */
+static const double compressing_share = 0.9;
+
+static void compress_arrays(laves__output *out, array arrays[ARRAY_COUNT], int level) {
+  double total = 0;
+  for (int i = 0; i < ARRAY_COUNT; i++) total += (double)raw_bytes(&arrays[i]);
+  for (int i = 0; i < ARRAY_COUNT && out->error.result == LAVES_OK && total > 0; i++) {
+    const double step = compressing_share * (double)raw_bytes(&arrays[i]) / total;
+    compress_array(out->context, &arrays[i], level, out->prepared, step, &out->error);
+    out->prepared += step;
+  }
+}
+
+void laves__write_vtu(laves__output *out, const laves_mesh *mesh, bool ascii, int compression_level) {
+  const form f = ascii ? TEXT : compression_level > 0 ? COMPRESSED : RAW;
+  const size_t faces = mesh->face_tags ? mesh->face_count : 0;
+  const grid g = {mesh, faces, mesh->tet_count + faces};
+  array arrays[ARRAY_COUNT];
+  describe_arrays(&g, arrays);
+  if (f == COMPRESSED) compress_arrays(out, arrays, compression_level);
+  for (int i = 0; i < ARRAY_COUNT; i++)
+    out->expected += f == COMPRESSED ? (double)compressed_bytes(&arrays[i]) : (double)raw_bytes(&arrays[i]);
+  write_xml(out, &g, arrays, f);
+  if (f != TEXT) write_appended(out, arrays, f);
+  laves__output_printf(out, "</VTKFile>\n");
+  for (int i = 0; i < ARRAY_COUNT; i++) free_compressed(out->context, &arrays[i]);
+}
