@@ -1,0 +1,412 @@
+/* PLY, the polygon format of Greg Turk (Stanford, 1994), in text and both binary forms.
+ *
+ * The header lists elements ("vertex", "face", others), each with a count and properties, which are numbers or lists of
+ * numbers of eight types; the data follow in that order. All of them are walked through; used are x, y, z of "vertex",
+ * the list vertex_indices (or vertex_index) of "face", or of "tristrips" with -1 between strips, and as tags an integer
+ * property of "face" with one of the names in is_label(). Elements may stand in any order.
+ *
+ * Every value is handled as a double, which holds all eight types exactly. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "io/surface_build.h"
+
+typedef enum ply_type { INT8, UINT8, INT16, UINT16, INT32, UINT32, FLOAT32, FLOAT64, TYPE_COUNT } ply_type;
+
+static const struct {
+  const char *name, *other_name;
+  size_t size;
+} TYPES[TYPE_COUNT] = {{"char", "int8", 1}, {"uchar", "uint8", 1}, {"short", "int16", 2},   {"ushort", "uint16", 2},
+                       {"int", "int32", 4}, {"uint", "uint32", 4}, {"float", "float32", 4}, {"double", "float64", 8}};
+
+/* What a property is to us. */
+typedef enum ply_role { ROLE_NONE, ROLE_X, ROLE_Y, ROLE_Z, ROLE_CORNERS, ROLE_STRIP, ROLE_LABEL } ply_role;
+
+typedef struct ply_property {
+  laves__word name;
+  ply_type type;
+  bool is_list;
+  ply_type count_type; /* of a list */
+  ply_role role;
+} ply_property;
+
+typedef struct ply_element {
+  laves__word name;
+  size_t count;
+  size_t first_property, property_count;
+  unsigned roles; /* bit 1 << role for each that a property has */
+} ply_element;
+
+typedef enum ply_encoding { ENCODING_NONE, ASCII, LITTLE_ENDIAN_BINARY, BIG_ENDIAN_BINARY } ply_encoding;
+
+typedef struct ply_file {
+  laves__surface_build *build;
+  ply_encoding encoding;
+  ply_element *elements;
+  size_t element_count, element_capacity;
+  ply_property *properties;
+  size_t property_count, property_capacity;
+  double label; /* that triangles have now; NAN before the first */
+} ply_file;
+
+bool laves__is_ply(laves__scan scan) {
+  laves__word word;
+  return laves__scan_word(&scan, &word) && laves__word_is(word, "ply") && !laves__scan_blanks(&scan) && scan.at < scan.end;
+}
+
+/* ---- header ---- */
+
+static bool scan_type(laves__scan *scan, ply_type *type) {
+  for (int i = 0; i < TYPE_COUNT; ++i) {
+    if (laves__scan_keyword(scan, TYPES[i].name) || laves__scan_keyword(scan, TYPES[i].other_name)) {
+      *type = (ply_type)i;
+      return true;
+    }
+  }
+  return false;
+}
+
+static laves_result read_format(ply_file *file) {
+  static const char *const NAMES[] = {
+      [ASCII] = "ascii", [LITTLE_ENDIAN_BINARY] = "binary_little_endian", [BIG_ENDIAN_BINARY] = "binary_big_endian"};
+  static const char *const TEXTS[] = {[ASCII] = "PLY (ASCII)",
+                                      [LITTLE_ENDIAN_BINARY] = "PLY (binary, little endian)",
+                                      [BIG_ENDIAN_BINARY] = "PLY (binary, big endian)"};
+  laves__scan *scan = &file->build->scan;
+  for (ply_encoding i = ASCII; i <= BIG_ENDIAN_BINARY; ++i) {
+    if (laves__scan_keyword(scan, NAMES[i])) {
+      file->encoding = i;
+      strcpy(file->build->input->format, TEXTS[i]);
+      return LAVES_OK;
+    }
+  }
+  return laves__scan_fail_expected(scan, file->build->error, "ascii, binary_little_endian or binary_big_endian");
+}
+
+static laves_result read_element(ply_file *file) {
+  laves__surface_build *build = file->build;
+  ply_element element = {.first_property = file->property_count};
+  if (!laves__scan_word(&build->scan, &element.name)) {
+    return laves__scan_fail_expected(&build->scan, build->error, "the name of an element");
+  }
+  if (!laves__scan_count(&build->scan, SIZE_MAX / 2, &element.count)) {
+    return laves__scan_fail_expected(&build->scan, build->error, "how many of the element there are");
+  }
+  if (!laves__grow(build->context, &file->elements, &file->element_capacity, file->element_count + 1, sizeof element)) {
+    return laves__fail_memory(build->context, build->error);
+  }
+  file->elements[file->element_count++] = element;
+  return LAVES_OK;
+}
+
+static bool is_label(laves__word name) {
+  static const char *const NAMES[] = {"label", "tag", "region", "region_id", "material_index", "group", "segment", "part"};
+  for (size_t i = 0; i < LAVES__COUNT_OF(NAMES); ++i) {
+    if (laves__word_is(name, NAMES[i])) return true;
+  }
+  return false;
+}
+
+static ply_role role_of(const ply_property *property, laves__word element) {
+  const laves__word name = property->name;
+  if (laves__word_is(element, "vertex") && !property->is_list && name.length == 1 && *name.at >= 'x' && *name.at <= 'z') {
+    return (ply_role)(ROLE_X + (*name.at - 'x'));
+  }
+  const bool corners = property->is_list && (laves__word_is(name, "vertex_indices") || laves__word_is(name, "vertex_index"));
+  if (corners && laves__word_is(element, "face")) return ROLE_CORNERS;
+  if (corners && laves__word_is(element, "tristrips")) return ROLE_STRIP;
+  const bool label = laves__word_is(element, "face") && !property->is_list && property->type < FLOAT32 && is_label(name);
+  return label ? ROLE_LABEL : ROLE_NONE;
+}
+
+static laves_result read_property(ply_file *file) {
+  laves__surface_build *build = file->build;
+  ply_property property = {0};
+  if (file->element_count == 0) {
+    return laves__build_fail(build, "a property stands before the first element");
+  }
+  property.is_list = laves__scan_keyword(&build->scan, "list");
+  if ((property.is_list && !scan_type(&build->scan, &property.count_type)) || !scan_type(&build->scan, &property.type)) {
+    return laves__scan_fail_expected(&build->scan, build->error, "a type (char, uchar, short, ushort, int, uint, float, double)");
+  }
+  if (!laves__scan_word(&build->scan, &property.name)) {
+    return laves__scan_fail_expected(&build->scan, build->error, "the name of a property");
+  }
+  if (!laves__grow(build->context, &file->properties, &file->property_capacity, file->property_count + 1, sizeof property)) {
+    return laves__fail_memory(build->context, build->error);
+  }
+  ply_element *element = &file->elements[file->element_count - 1];
+  property.role = role_of(&property, element->name);
+  if ((element->roles >> property.role & 1) != 0) property.role = ROLE_NONE;  // the first one counts
+  element->roles |= 1u << property.role;
+  file->properties[file->property_count++] = property;
+  ++element->property_count;
+  return LAVES_OK;
+}
+
+/* Goes behind the line "end_header". Where lines end with a lone CR, an LF behind it is data already. */
+static laves_result end_header(ply_file *file) {
+  laves__scan *scan = &file->build->scan;
+  const char *first_end = memchr(scan->begin, '\r', (size_t)(scan->at - scan->begin));
+  const bool lone_cr = first_end != NULL && first_end[1] != '\n';
+  if (laves__scan_blanks(scan)) {
+    return laves__scan_fail_expected(scan, file->build->error, "the end of the line behind end_header");
+  }
+  if (lone_cr && scan->at < scan->end) {
+    ++scan->at;
+  } else {
+    laves__scan_next_line(scan);
+  }
+  if (file->encoding == ENCODING_NONE) {
+    return laves__build_fail(file->build, "the header has no line 'format'");
+  }
+  file->build->binary = file->encoding != ASCII;
+  return LAVES_OK;
+}
+
+static laves_result read_header(ply_file *file) {
+  laves__scan *scan = &file->build->scan;
+  laves_result result = LAVES_OK;
+  while (result == LAVES_OK && laves__scan_next_line(scan)) {
+    if (laves__scan_keyword(scan, "end_header")) return end_header(file);
+    if (laves__scan_keyword(scan, "format")) {
+      result = read_format(file);
+    } else if (laves__scan_keyword(scan, "element")) {
+      result = read_element(file);
+    } else if (laves__scan_keyword(scan, "property")) {
+      result = read_property(file);
+    } else if (!laves__scan_keyword(scan, "comment") && !laves__scan_keyword(scan, "obj_info") && laves__scan_blanks(scan)) {
+      result = laves__scan_fail_expected(scan, file->build->error, "element, property, comment or end_header");
+    }
+  }
+  return result == LAVES_OK ? laves__build_fail(file->build, "the file ends inside the header") : result;
+}
+
+/* ---- data ---- */
+
+static uint64_t load_bits(const char *at, size_t size, bool big_endian) {
+  uint64_t bits = 0;
+  for (size_t i = 0; i < size; ++i) {
+    const size_t shift = 8 * (big_endian ? size - 1 - i : i);
+    bits |= (uint64_t)(unsigned char)at[i] << shift;
+  }
+  return bits;
+}
+
+static double value_of_bits(uint64_t bits, ply_type type) {
+  const uint32_t low = (uint32_t)bits;
+  float single;
+  double value;
+  switch (type) {
+    case INT8:
+      return (int8_t)bits;
+    case INT16:
+      return (int16_t)bits;
+    case INT32:
+      return (int32_t)bits;
+    case FLOAT32:
+      memcpy(&single, &low, sizeof single);
+      return single;
+    case FLOAT64:
+      memcpy(&value, &bits, sizeof value);
+      return value;
+    default:
+      return (double)bits;
+  }
+}
+
+static laves_result fail_value(const ply_file *file, const ply_element *element, size_t index, const ply_property *property,
+                               const char *what) {
+  char element_name[LAVES__QUOTE_SIZE], property_name[LAVES__QUOTE_SIZE];
+  return laves__build_fail(file->build, "%s %zu of %zu, %s: %s", laves__quote(element->name, element_name), index + 1,
+                           element->count, laves__quote(property->name, property_name), what);
+}
+
+/* Takes one number; false when there is none or the file ends. */
+static bool take_value(ply_file *file, ply_type type, double *value) {
+  laves__scan *scan = &file->build->scan;
+  if (file->encoding == ASCII) {
+    laves__scan_space(scan);
+    return laves__scan_double(scan, value);
+  }
+  if (laves__build_left(file->build) < TYPES[type].size) return false;
+  *value = value_of_bits(load_bits(scan->at, TYPES[type].size, file->encoding == BIG_ENDIAN_BINARY), type);
+  scan->at += TYPES[type].size;
+  return true;
+}
+
+/* Passes over `count` numbers, which may be nan; false when the file ends first. */
+static bool skip_values(ply_file *file, ply_type type, uint64_t count) {
+  laves__scan *scan = &file->build->scan;
+  laves__word word;
+  if (file->encoding != ASCII) {
+    if (count > laves__build_left(file->build) / TYPES[type].size) return false;
+    scan->at += count * TYPES[type].size;
+    return true;
+  }
+  for (uint64_t i = 0; i < count; ++i) {
+    if (!laves__scan_space(scan) || !laves__scan_word(scan, &word)) return false;
+  }
+  return true;
+}
+
+/* Takes the length of a list: a whole number that what is left of the file can hold. */
+static bool take_list_length(ply_file *file, const ply_property *property, uint64_t *length) {
+  double value;
+  if (!take_value(file, property->count_type, &value) || !(value >= 0 && value <= UINT32_MAX)) return false;
+  const size_t item_size = file->encoding == ASCII ? 1 : TYPES[property->type].size;
+  *length = (uint64_t)value;
+  return (double)*length == value && *length <= laves__build_left(file->build) / item_size;
+}
+
+/* Takes an index; -1 is allowed too, for strips. */
+static bool take_index(ply_file *file, ply_type type, int64_t *index) {
+  double value;
+  if (!take_value(file, type, &value) || !(value >= -1 && value <= UINT32_MAX)) return false;
+  *index = (int64_t)value;
+  return (double)*index == value;
+}
+
+/* Reads a polygon of `length` corners as a fan. */
+static laves_result take_polygon(ply_file *file, const ply_element *element, size_t item, const ply_property *property,
+                                 uint64_t length) {
+  laves_result result = LAVES_OK;
+  laves__build_face(file->build);
+  for (uint64_t i = 0; i < length && result == LAVES_OK; ++i) {
+    int64_t index;
+    if (!take_index(file, property->type, &index)) {
+      return fail_value(file, element, item, property, "this is not the index of a vertex, or the file ends");
+    }
+    result = laves__build_corner(file->build, index);
+  }
+  return result == LAVES_OK ? laves__build_face_end(file->build) : result;
+}
+
+/* Reads strips of triangles: every index from the third of a strip makes a triangle with the two before it, in turn
+ * forwards and backwards. */
+static laves_result take_strips(ply_file *file, const ply_element *element, size_t item, const ply_property *property,
+                                uint64_t length) {
+  laves_result result = LAVES_OK;
+  int64_t latest[2] = {0, 0};
+  uint64_t run = 0;
+  for (uint64_t i = 0; i < length && result == LAVES_OK; ++i) {
+    int64_t index;
+    if (!take_index(file, property->type, &index)) {
+      return fail_value(file, element, item, property, "this is not the index of a vertex, or the file ends");
+    }
+    run = index < 0 ? 0 : run + 1;
+    if (run >= 3) {
+      laves__build_face(file->build);
+      result = laves__build_corner(file->build, latest[run % 2 == 0]);
+      if (result == LAVES_OK) result = laves__build_corner(file->build, latest[run % 2 != 0]);
+      if (result == LAVES_OK) result = laves__build_corner(file->build, index);
+      if (result == LAVES_OK) result = laves__build_face_end(file->build);
+    }
+    latest[0] = latest[1];
+    latest[1] = index;
+  }
+  return result;
+}
+
+static laves_result take_list(ply_file *file, const ply_element *element, size_t item, const ply_property *property) {
+  uint64_t length;
+  if (!take_list_length(file, property, &length)) {
+    return fail_value(file, element, item, property, "the length of the list is no number, or more than the file holds");
+  }
+  if (property->role == ROLE_CORNERS) return take_polygon(file, element, item, property, length);
+  if (property->role == ROLE_STRIP) return take_strips(file, element, item, property, length);
+  const bool skipped = skip_values(file, property->type, length);
+  return skipped ? LAVES_OK : fail_value(file, element, item, property, "the file ends here");
+}
+
+static laves_result take_scalar(ply_file *file, const ply_element *element, size_t item, const ply_property *property,
+                                double values[ROLE_LABEL + 1]) {
+  if (property->role == ROLE_NONE) {
+    return skip_values(file, property->type, 1) ? LAVES_OK : fail_value(file, element, item, property, "the file ends here");
+  }
+  double value;
+  if (!take_value(file, property->type, &value) || !isfinite(value)) {
+    return fail_value(file, element, item, property, "there is no finite number here, or the file ends");
+  }
+  values[property->role] = value;
+  return LAVES_OK;
+}
+
+/* Gives the triangles from `first_triangle` on the name "label 7". */
+static laves_result change_label(ply_file *file, const ply_element *element, double label, size_t first_triangle) {
+  laves__surface_build *build = file->build;
+  laves__word kind = {"label", 5};
+  for (size_t i = 0; i < element->property_count; ++i) {
+    const ply_property *property = &file->properties[element->first_property + i];
+    if (property->role == ROLE_LABEL) kind = property->name;
+  }
+  char text[64];
+  const int length = snprintf(text, sizeof text, "%.*s %.0f", (int)kind.length, kind.at, label);
+  file->label = label;
+  const bool started = laves__tag_list_start(build->context, &build->tags, text, (size_t)length, first_triangle, "unlabelled");
+  return started ? LAVES_OK : laves__fail_memory(build->context, build->error);
+}
+
+static laves_result take_item(ply_file *file, const ply_element *element, size_t item, bool is_vertex) {
+  double values[ROLE_LABEL + 1] = {[ROLE_LABEL] = NAN};
+  const size_t first_triangle = file->build->input->triangle_count;
+  for (size_t i = 0; i < element->property_count; ++i) {
+    const ply_property *property = &file->properties[element->first_property + i];
+    const laves_result result =
+        property->is_list ? take_list(file, element, item, property) : take_scalar(file, element, item, property, values);
+    if (result != LAVES_OK) return result;
+  }
+  if (is_vertex) return laves__build_point(file->build, values[ROLE_X], values[ROLE_Y], values[ROLE_Z]);
+  const bool changed = !isnan(values[ROLE_LABEL]) && values[ROLE_LABEL] != file->label;
+  return changed ? change_label(file, element, values[ROLE_LABEL], first_triangle) : LAVES_OK;
+}
+
+/* Fewest bytes that one item takes; each number in text is at least a digit and a space. */
+static size_t least_item_size(const ply_file *file, const ply_element *element) {
+  size_t size = 0;
+  for (size_t i = 0; i < element->property_count; ++i) {
+    const ply_property *property = &file->properties[element->first_property + i];
+    size += file->encoding == ASCII ? 2 : TYPES[property->is_list ? property->count_type : property->type].size;
+  }
+  return size;
+}
+
+static laves_result take_element(ply_file *file, const ply_element *element) {
+  laves__surface_build *build = file->build;
+  const unsigned point_roles = 1u << ROLE_X | 1u << ROLE_Y | 1u << ROLE_Z;
+  const bool is_vertex = laves__word_is(element->name, "vertex");
+  char name[LAVES__QUOTE_SIZE];
+  if (is_vertex && (element->roles & point_roles) != point_roles) {
+    return laves__build_fail(build, "the vertices have no properties x, y and z");
+  }
+  const size_t item_size = least_item_size(file, element);
+  if (item_size == 0) return LAVES_OK;  // without properties nothing is stored
+  // The last number of a text needs no space behind it.
+  if (element->count > (laves__build_left(build) + 1) / item_size) {
+    return laves__build_fail(build, "%zu of element %s are promised, but the file ends before; it was cut or its header is wrong",
+                             element->count, laves__quote(element->name, name));
+  }
+  const bool is_face = (element->roles & 1u << ROLE_CORNERS) != 0;
+  laves_result result =
+      laves__build_reserve(build, is_vertex ? element->count : 0, item_size, is_face ? element->count : 0, item_size);
+  for (size_t i = 0; i < element->count && result == LAVES_OK; ++i) {
+    result = take_item(file, element, i, is_vertex);
+    if ((i & 0xFFFF) == 0xFFFF && laves__cancelled(build->context, "read", (double)i / (double)element->count)) {
+      result = laves__fail_cancelled(build->error);
+    }
+  }
+  return result;
+}
+
+laves_result laves__read_ply(laves__surface_build *build) {
+  ply_file file = {.build = build, .label = NAN};
+  strcpy(build->input->format, "PLY");
+  laves_result result = read_header(&file);
+  for (size_t i = 0; i < file.element_count && result == LAVES_OK; ++i) {
+    result = take_element(&file, &file.elements[i]);
+  }
+  laves__free(build->context, file.elements, file.element_capacity, sizeof *file.elements);
+  laves__free(build->context, file.properties, file.property_capacity, sizeof *file.properties);
+  return result;
+}
