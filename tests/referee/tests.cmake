@@ -5,6 +5,6 @@ target_include_directories(write_formats PRIVATE ${PROJECT_SOURCE_DIR}/src ${CMA
 target_link_libraries(write_formats PRIVATE laves PkgConfig::CMOCKA)
 foreach(referee meshio gmsh)
   add_test(NAME referee/${referee}
-    COMMAND ${CMAKE_CURRENT_LIST_DIR}/referee/read_with_${referee} $<TARGET_FILE:write_formats>)
+    COMMAND ${CMAKE_CURRENT_LIST_DIR}/read_with_${referee} $<TARGET_FILE:write_formats>)
   set_tests_properties(referee/${referee} PROPERTIES LABELS referee SKIP_RETURN_CODE 77)
 endforeach()
