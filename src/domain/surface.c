@@ -1,0 +1,198 @@
+/* From the triangles of a file to an oracle.
+ *
+ * In: triangles as read, which are consumed.  Out: a domain: oracle, facts, tags.
+ *
+ *   weld -> tree -> topology -> direction -> normals -> oracle
+ *
+ * Local coordinates are input minus origin. The origin is the box's centre on those axes where the centre lies further out
+ * than the box is wide, where the subtraction is exact; elsewhere zero, where there is nothing to subtract. */
+#include <string.h>
+
+#include "domain/surface.h"
+
+/* Squares, cubes and products of coordinates must stay within the range of double with room. */
+static const double diagonal_min = 1e-60, diagonal_max = 1e60;
+
+static laves__box3 box_of(const laves__vec3 *points, size_t count) {
+  laves__box3 b = box3_empty();
+  for (size_t i = 0; i < count; i++) b = box3_add(b, points[i]);
+  return b;
+}
+
+static laves__box3 used_box(const laves__surface_input *input) {
+  laves__box3 b = box3_empty();
+  for (size_t f = 0; f < input->triangle_count; f++)
+    for (int i = 0; i < 3; i++) b = box3_add(b, input->points[input->triangles[f][i]]);
+  return b;
+}
+
+static laves__vec3 choose_origin(laves__box3 b) {
+  const laves__vec3 c = box3_centre(b);
+  const double diagonal = box3_diagonal(b);
+  return v3(fabs(c.x) > diagonal ? c.x : 0, fabs(c.y) > diagonal ? c.y : 0, fabs(c.z) > diagonal ? c.z : 0);
+}
+
+/* Faces and tags change to the order of the tree; across and normals are not made yet. */
+static bool reorder(laves__surface *s, const uint32_t *order) {
+  const size_t count = s->face_count;
+  uint32_t(*faces)[3] = laves__alloc(s->context, s->face_capacity, sizeof *faces);
+  int32_t *tags = s->tags ? laves__alloc(s->context, s->face_capacity, sizeof *tags) : NULL;
+  if (!faces || (s->tags && !tags)) {
+    laves__free(s->context, faces, s->face_capacity, sizeof *faces);
+    laves__free(s->context, tags, s->face_capacity, sizeof *tags);
+    return false;
+  }
+  for (size_t i = 0; i < count; i++) {
+    memcpy(faces[i], s->faces[order[i]], sizeof *faces);
+    if (tags) tags[i] = s->tags[order[i]];
+  }
+  laves__free(s->context, s->faces, s->face_capacity, sizeof *s->faces);
+  laves__free(s->context, s->tags, s->face_capacity, sizeof *s->tags);
+  s->faces = faces;
+  s->tags = tags;
+  return true;
+}
+
+/* Points change to the order in which faces first use them, so that what is near in space is near in memory. */
+static bool reorder_points(laves__surface *s) {
+  const size_t count = s->point_count;
+  laves__vec3 *points = laves__alloc(s->context, s->point_capacity, sizeof *points);
+  uint32_t *number = laves__alloc(s->context, count, sizeof *number);
+  const bool done = points && number;
+  if (done) {
+    memset(number, 0xff, count * sizeof *number);
+    uint32_t next = 0;
+    for (size_t f = 0; f < s->face_count; f++)
+      for (int i = 0; i < 3; i++) {
+        uint32_t *p = &s->faces[f][i];
+        if (number[*p] == LAVES__NONE) {
+          points[next] = s->points[*p];
+          number[*p] = next++;
+        }
+        *p = number[*p];
+      }
+    s->point_count = next;
+    laves__free(s->context, s->points, s->point_capacity, sizeof *s->points);
+    s->points = points;
+  } else {
+    laves__free(s->context, points, s->point_capacity, sizeof *points);
+  }
+  laves__free(s->context, number, count, sizeof *number);
+  return done;
+}
+
+/* (Re)builds the tree and brings everything into its order. */
+static bool build_tree(laves__surface *s) {
+  const size_t count = s->face_count;
+  laves__bvh_free(s->context, &s->bvh);
+  uint32_t *order = laves__alloc(s->context, count, sizeof *order);
+  const bool done = order && laves__bvh_build(s->context, s->points, (const uint32_t(*)[3])s->faces, count, order, &s->bvh) &&
+                    reorder(s, order) && reorder_points(s);
+  laves__free(s->context, order, count, sizeof *order);
+  return done;
+}
+
+/* Turns every face over, and the triangles of the tree with them. */
+static void turn_all(laves__surface *s) {
+  for (size_t f = 0; f < s->face_count; f++) {
+    const uint32_t swap = s->faces[f][1];
+    s->faces[f][1] = s->faces[f][2];
+    s->faces[f][2] = swap;
+    laves__triangle *t = &s->bvh.triangles[f];
+    *t = (laves__triangle){t->a, t->c, t->b, t->dual_c, t->dual_b};
+  }
+}
+
+static bool solve(laves__surface *s, laves_domain_info *info) {
+  if (!build_tree(s) || !laves__surface_topology(s, info)) return false;
+  double volume, area;
+  laves__surface_measure(s, &volume, &area);
+  if (volume < 0) {
+    turn_all(s);
+    info->turned = true;
+    const laves_domain_info before = *info;
+    if (!laves__surface_topology(s, info)) return false;
+    *info = before;
+  }
+  info->volume = fabs(volume);
+  info->area = area;
+  return laves__surface_normals(s);
+}
+
+static void to_input(laves__vec3 p, laves__vec3 origin, double out[3]) {
+  out[0] = p.x + origin.x;
+  out[1] = p.y + origin.y;
+  out[2] = p.z + origin.z;
+}
+
+static void fill_domain(laves__surface *s, laves__surface_input *input, laves__vec3 origin, laves_domain *domain) {
+  laves_domain_info *info = &domain->info;
+  laves__oracle *oracle = &domain->oracle;
+  oracle->origin = origin;
+  oracle->bounds = box_of(s->points, s->point_count);
+  oracle->volume = info->volume;
+  oracle->area = info->area;
+  laves__surface_oracle(s, oracle);
+  to_input(oracle->bounds.lower, origin, info->lower);
+  to_input(oracle->bounds.upper, origin, info->upper);
+  for (int d = 0; d < LAVES_DEFECT_COUNT; d++)
+    if (info->defects[d])
+      to_input(v3(info->defect_place[d][0], info->defect_place[d][1], info->defect_place[d][2]), origin, info->defect_place[d]);
+  memcpy(domain->format, input->format, sizeof domain->format);
+  info->kind = LAVES_DOMAIN_SURFACE;
+  info->point_count = s->point_count;
+  info->triangle_count = s->face_count;
+  if (!input->tags) return;
+  domain->tag_names = input->tag_names;
+  info->tag_count = input->tag_names ? input->tag_count : 0;
+  input->tag_names = NULL;
+  input->tag_count = 0;
+}
+
+laves_result laves__surface_build(laves_context *context, laves__surface_input *input, laves_domain *domain, laves_error *error) {
+  laves_result result = LAVES_OK;
+  laves__surface *s = NULL;
+  const laves__box3 box = used_box(input);
+  const double diagonal = box3_diagonal(box);
+  if (input->triangle_count == 0) {
+    result = laves__fail(error, LAVES_ERROR_INPUT, "the surface has no triangles");
+    goto clean_up;
+  }
+  if (input->triangle_count >= LAVES__FACES_MAX || input->point_count >= LAVES__NONE) {
+    result = laves__fail(error, LAVES_ERROR_INPUT, "the surface has %zu triangles; at most %d can be handled",
+                         input->triangle_count, LAVES__FACES_MAX - 1);
+    goto clean_up;
+  }
+  if (!(diagonal >= diagonal_min && diagonal <= diagonal_max)) {
+    result = laves__fail(error, LAVES_ERROR_INPUT,
+                         "the surface is %g wide, which arithmetic cannot handle; scale it to between %g and %g", diagonal,
+                         diagonal_min, diagonal_max);
+    goto clean_up;
+  }
+  s = laves__alloc_zeroed(context, 1, sizeof *s);
+  if (!s) {
+    result = laves__fail_memory(context, error);
+    goto clean_up;
+  }
+  s->context = context;
+  s->diagonal = diagonal;
+  const laves__vec3 origin = choose_origin(box);
+  if (!laves__surface_weld(s, input, origin, &domain->info)) {
+    result = laves__fail_memory(context, error);
+    goto clean_up;
+  }
+  if (s->face_count == 0) {
+    result = laves__fail(error, LAVES_ERROR_INPUT, "all %zu triangles of the surface are without area", input->triangle_count);
+    goto clean_up;
+  }
+  if (!solve(s, &domain->info)) {
+    result = laves__fail_memory(context, error);
+    goto clean_up;
+  }
+  fill_domain(s, input, origin, domain);
+  s = NULL;
+clean_up:
+  laves__surface_free(context, s);
+  laves__surface_input_free(context, input);
+  return result;
+}

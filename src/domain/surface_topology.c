@@ -1,0 +1,254 @@
+/* What meets what: the face across each edge, fans around points, components, normals, and the defects among them.
+ *
+ * In: welded faces.  Out: `across`, counts of defects with a place for the first, normals of faces and points.
+ *
+ * Half-edges are laid beside the lesser of their two points, so that the uses of one edge stand in one short list.
+ * An edge with exactly two faces joins them, whatever their directions. A point is regular when turning about it from face
+ * to face over such edges visits all its faces.
+ *
+ * The normal of a point is the sum of its faces' normals weighted by their angles, which makes the sign of the distance
+ * exact when the nearest feature is a point [baerentzen2005, sec. 3]. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "domain/surface.h"
+
+static void note(laves_domain_info *info, laves_defect defect, laves__vec3 place) {
+  if (info->defects[defect]++ > 0) return;
+  info->defect_place[defect][0] = place.x;
+  info->defect_place[defect][1] = place.y;
+  info->defect_place[defect][2] = place.z;
+}
+
+/* A use of an edge, beside its lesser point. */
+typedef struct use {
+  uint32_t other; /* the greater point */
+  uint32_t half;  /* 3 face + corner where it starts */
+} use;
+
+static int compare_uses(const void *a, const void *b) {
+  const use *x = a, *y = b;
+  if (x->other != y->other) return x->other < y->other ? -1 : 1;
+  return x->half < y->half ? -1 : x->half > y->half;
+}
+
+static void sort_uses(use *uses, size_t count) {
+  if (count > 24) {
+    qsort(uses, count, sizeof *uses, compare_uses);
+    return;
+  }
+  for (size_t i = 1; i < count; i++) {
+    const use moved = uses[i];
+    size_t j = i;
+    for (; j > 0 && compare_uses(&uses[j - 1], &moved) > 0; j--) uses[j] = uses[j - 1];
+    uses[j] = moved;
+  }
+}
+
+static uint32_t edge_start(const laves__surface *s, uint32_t half) { return s->faces[half / 3][half % 3]; }
+static uint32_t edge_end(const laves__surface *s, uint32_t half) { return s->faces[half / 3][(half % 3 + 1) % 3]; }
+
+/* ---- components ---- */
+
+static uint32_t find_root(uint32_t *parent, uint32_t f) {
+  while (parent[f] != f) {
+    parent[f] = parent[parent[f]];
+    f = parent[f];
+  }
+  return f;
+}
+
+static void join(uint32_t *parent, uint32_t a, uint32_t b) {
+  a = find_root(parent, a);
+  b = find_root(parent, b);
+  if (a < b)
+    parent[b] = a;
+  else
+    parent[a] = b;
+}
+
+/* ---- edges ---- */
+
+typedef struct edges {
+  laves__surface *s;
+  laves_domain_info *info;
+  uint32_t *parent;
+  bool closed;
+} edges;
+
+/* All uses of one edge. */
+static void judge_edge(edges *e, const use *uses, size_t count) {
+  laves__surface *s = e->s;
+  size_t forward = 0;
+  for (size_t i = 0; i < count; i++) {
+    forward += edge_start(s, uses[i].half) < uses[i].other;
+    if (i > 0) join(e->parent, uses[0].half / 3, uses[i].half / 3);
+    s->across[uses[i].half] = LAVES__NONE;
+  }
+  const laves__vec3 place = v3_lerp(s->points[edge_start(s, uses[0].half)], s->points[edge_end(s, uses[0].half)], 0.5);
+  if (2 * forward != count) e->closed = false;
+  if (count == 1) note(e->info, LAVES_DEFECT_OPEN_EDGE, place);
+  if (count > 2) note(e->info, LAVES_DEFECT_NONMANIFOLD_EDGE, place);
+  if (count != 2) return;
+  if (forward != 1) note(e->info, LAVES_DEFECT_DIRECTION, place);
+  s->across[uses[0].half] = uses[1].half;
+  s->across[uses[1].half] = uses[0].half;
+}
+
+/* uses, in lists by lesser point: starts[p] .. starts[p + 1]. */
+static void list_uses(const laves__surface *s, uint32_t *starts, use *uses) {
+  const uint32_t half_count = (uint32_t)(3 * s->face_count);
+  for (uint32_t h = 0; h < half_count; h++) {
+    const uint32_t u = edge_start(s, h), v = edge_end(s, h);
+    starts[u < v ? u : v]++;
+  }
+  uint32_t sum = 0;
+  for (size_t p = 0; p <= s->point_count; p++) {
+    sum += starts[p];
+    starts[p] = sum;
+  }
+  for (uint32_t h = half_count; h-- > 0;) {
+    const uint32_t u = edge_start(s, h), v = edge_end(s, h);
+    uses[--starts[u < v ? u : v]] = (use){u < v ? v : u, h};
+  }
+}
+
+static void judge_edges(edges *e, const uint32_t *starts, use *uses) {
+  for (size_t p = 0; p < e->s->point_count; p++) {
+    use *list = uses + starts[p];
+    const size_t count = starts[p + 1] - starts[p];
+    sort_uses(list, count);
+    for (size_t begin = 0, end; begin < count; begin = end) {
+      for (end = begin + 1; end < count && list[end].other == list[begin].other; end++) {
+      }
+      judge_edge(e, list + begin, end - begin);
+    }
+  }
+}
+
+/* ---- fans ---- */
+
+/* The corner of `face` at `point`. */
+static uint32_t corner_of(const laves__surface *s, uint32_t face, uint32_t point) {
+  return s->faces[face][0] == point ? 0 : s->faces[face][1] == point ? 1 : 2;
+}
+
+/* Faces met when turning about `point` from `face` over its edge `edge` on; `closes` when it comes back to the start. */
+static size_t turn(const laves__surface *s, uint32_t point, uint32_t face, uint32_t edge, size_t limit, bool *closes) {
+  const uint32_t start = face;
+  size_t met = 0;
+  *closes = false;
+  while (met < limit) {
+    const uint32_t half = s->across[3 * face + edge];
+    if (half == LAVES__NONE) break;
+    face = half / 3;
+    if (face == start) {
+      *closes = true;
+      break;
+    }
+    met++;
+    const uint32_t corner = corner_of(s, face, point), entered = half % 3;
+    edge = entered == corner ? (corner + 2) % 3 : corner;
+  }
+  return met;
+}
+
+/* Whether all `count` faces at the point form one fan; `face` is any of them. */
+static bool one_fan(const laves__surface *s, uint32_t point, uint32_t face, size_t count) {
+  const uint32_t corner = corner_of(s, face, point);
+  bool closes;
+  size_t met = 1 + turn(s, point, face, corner, count, &closes);
+  if (!closes) met += turn(s, point, face, (corner + 2) % 3, count, &closes);
+  return met == count;
+}
+
+static bool judge_points(laves__surface *s, laves_domain_info *info) {
+  const size_t count = s->point_count;
+  uint32_t *valence = laves__alloc_zeroed(s->context, count, sizeof *valence);
+  uint32_t *any_face = laves__alloc(s->context, count, sizeof *any_face);
+  const bool done = valence && any_face;
+  if (done) {
+    for (size_t f = 0; f < s->face_count; f++)
+      for (int i = 0; i < 3; i++) {
+        valence[s->faces[f][i]]++;
+        any_face[s->faces[f][i]] = (uint32_t)f;
+      }
+    for (uint32_t p = 0; p < count; p++)
+      if (valence[p] > 0 && !one_fan(s, p, any_face[p], valence[p])) note(info, LAVES_DEFECT_NONMANIFOLD_VERTEX, s->points[p]);
+  }
+  laves__free(s->context, valence, count, sizeof *valence);
+  laves__free(s->context, any_face, count, sizeof *any_face);
+  return done;
+}
+
+bool laves__surface_topology(laves__surface *s, laves_domain_info *info) {
+  const size_t starts_count = s->point_count + 1, half_count = 3 * s->face_count;
+  bool done = false;
+  uint32_t *starts = laves__alloc_zeroed(s->context, starts_count, sizeof *starts);
+  use *uses = laves__alloc(s->context, half_count, sizeof *uses);
+  uint32_t *parent = laves__alloc(s->context, s->face_count, sizeof *parent);
+  if (!s->across) s->across = laves__alloc(s->context, 3 * s->face_capacity, sizeof *s->across);
+  if (!starts || !uses || !parent || !s->across) goto clean_up;
+  for (uint32_t f = 0; f < s->face_count; f++) parent[f] = f;
+  list_uses(s, starts, uses);
+  edges e = {s, info, parent, true};
+  judge_edges(&e, starts, uses);
+  info->closed = e.closed;
+  info->component_count = 0;
+  for (uint32_t f = 0; f < s->face_count; f++) info->component_count += parent[f] == f;
+  done = judge_points(s, info);
+clean_up:
+  laves__free(s->context, starts, starts_count, sizeof *starts);
+  laves__free(s->context, uses, half_count, sizeof *uses);
+  laves__free(s->context, parent, s->face_count, sizeof *parent);
+  return done;
+}
+
+/* ---- normals and measures ---- */
+
+double laves__angle(double y, double x) {
+  const double ax = fabs(x), ay = fabs(y);
+  const double large = ax > ay ? ax : ay, small = ax > ay ? ay : ax;
+  if (!(large > 0)) return 0;
+  /* Abramowitz and Stegun, "Handbook of mathematical functions", 1964, eq. 4.4.49. */
+  const double t = small / large, u = t * t;
+  const double p0 = 1 + u * (-0.3333314528 + u * (0.1999355085 + u * (-0.1420889944 + u * 0.1065626393)));
+  const double p1 = u * u * u * u * u * (-0.0752896400 + u * (0.0429096138 + u * (-0.0161657367 + u * 0.0028662257)));
+  double angle = t * (p0 + p1);
+  if (ay > ax) angle = 1.5707963267948966 - angle;
+  if (x < 0) angle = 3.141592653589793 - angle;
+  return y < 0 ? -angle : angle;
+}
+
+bool laves__surface_normals(laves__surface *s) {
+  if (!s->face_normals) s->face_normals = laves__alloc(s->context, s->face_capacity, sizeof *s->face_normals);
+  if (!s->point_normals) s->point_normals = laves__alloc(s->context, s->point_capacity, sizeof *s->point_normals);
+  if (!s->face_normals || !s->point_normals) return false;
+  memset(s->point_normals, 0, s->point_count * sizeof *s->point_normals);
+  for (size_t f = 0; f < s->face_count; f++) {
+    const uint32_t *face = s->faces[f];
+    const laves__vec3 p[3] = {s->points[face[0]], s->points[face[1]], s->points[face[2]]};
+    const laves__vec3 cross = v3_cross(v3_sub(p[1], p[0]), v3_sub(p[2], p[0]));
+    const laves__vec3 normal = v3_unit(cross);
+    const double sine = v3_norm(cross);
+    s->face_normals[f] = normal;
+    for (int i = 0; i < 3; i++) {
+      const laves__vec3 u = v3_sub(p[(i + 1) % 3], p[i]), v = v3_sub(p[(i + 2) % 3], p[i]);
+      const double angle = laves__angle(sine, v3_dot(u, v));
+      s->point_normals[face[i]] = v3_mad(s->point_normals[face[i]], normal, angle);
+    }
+  }
+  return true;
+}
+
+void laves__surface_measure(const laves__surface *s, double *volume, double *area) {
+  double volume6 = 0, area2 = 0;
+  for (size_t f = 0; f < s->face_count; f++) {
+    const uint32_t *face = s->faces[f];
+    const laves__vec3 a = s->points[face[0]], b = s->points[face[1]], c = s->points[face[2]];
+    volume6 += v3_dot(a, v3_cross(b, c));
+    area2 += v3_norm(v3_cross(v3_sub(b, a), v3_sub(c, a)));
+  }
+  *volume = volume6 / 6;
+  *area = area2 / 2;
+}
