@@ -1,0 +1,179 @@
+/* Domains as callers see them: makers, facts, evaluation.
+ *
+ * A maker fills a zeroed domain; whatever fails, the handle stays NULL and nothing is kept. */
+#include <string.h>
+
+#include "domain/oracle.h"
+#include "domain/surface_input.h"
+#include "io/file.h"
+
+static laves_domain *domain_create(laves_context *context) {
+  laves__progress_reset(context);
+  laves_domain *domain = laves__alloc_zeroed(context, 1, sizeof *domain);
+  if (domain) domain->context = context;
+  return domain;
+}
+
+/* Hands the domain over when all went well, frees it otherwise. */
+static laves_result finish(laves_result result, laves_domain *made, laves_domain **domain) {
+  if (result == LAVES_OK) {
+    made->info.format = made->format;
+    *domain = made;
+  } else {
+    laves_domain_free(made);
+  }
+  return result;
+}
+
+static bool ends_with_lua(const char *path) {
+  const size_t length = strlen(path);
+  return length > 4 && strcmp(path + length - 4, ".lua") == 0;
+}
+
+/* The folder of a path: all before its last slash ("" for a plain name), in a block of *length + 1 bytes. */
+static char *folder_of(laves_context *context, const char *path, size_t *length) {
+  const char *slash = strrchr(path, '/');
+  *length = slash ? (size_t)(slash - path) + (slash == path) : 0;
+  char *folder = laves__alloc(context, *length + 1, 1);
+  if (!folder) return NULL;
+  memcpy(folder, path, *length);
+  folder[*length] = 0;
+  return folder;
+}
+
+static laves_result build_script(laves_context *context, const char *path, const char *text, size_t length, laves_domain *made,
+                                 laves_error *error) {
+  size_t folder_length;
+  char *folder = folder_of(context, path, &folder_length);
+  if (!folder) return laves__fail_memory(context, error);
+  const laves_result result =
+      laves__implicit_build(context, text, length, false, path, folder_length ? folder : NULL, made, error);
+  laves__free(context, folder, folder_length + 1, 1);
+  return result;
+}
+
+static laves_result build_surface(laves_context *context, const char *path, const char *bytes, size_t length, laves_domain *made,
+                                  laves_error *error) {
+  laves__surface_input input = {0};
+  const laves_result result = laves__surface_parse(context, bytes, length, path, &input, error);
+  return result == LAVES_OK ? laves__surface_build(context, &input, made, error) : result;
+}
+
+laves_result laves_domain_from_file(laves_context *context, const char *path, laves_domain **domain, laves_error *error) {
+  *domain = NULL;
+  laves_domain *made = domain_create(context);
+  if (!made) return laves__fail_memory(context, error);
+  char *bytes = NULL;
+  size_t length = 0;
+  laves_result result = laves__file_read(context, path, &bytes, &length, error);
+  if (result == LAVES_OK) {
+    result = ends_with_lua(path) ? build_script(context, path, bytes, length, made, error)
+                                 : build_surface(context, path, bytes, length, made, error);
+    laves__free(context, bytes, length + 1, 1);
+  }
+  return finish(result, made, domain);
+}
+
+laves_result laves_domain_from_expression(laves_context *context, const char *text, laves_domain **domain, laves_error *error) {
+  *domain = NULL;
+  laves_domain *made = domain_create(context);
+  if (!made) return laves__fail_memory(context, error);
+  return finish(laves__implicit_build(context, text, strlen(text), true, "expression", NULL, made, error), made, domain);
+}
+
+/* Checked copies of the caller's arrays. */
+static laves_result copy_triangles(laves_context *context, const double *points, size_t point_count, const uint32_t *triangles,
+                                   size_t triangle_count, const int32_t *tags, laves__surface_input *input, laves_error *error) {
+  for (size_t i = 0; i < 3 * point_count; i++)
+    if (!isfinite(points[i])) return laves__fail(error, LAVES_ERROR_INPUT, "point %zu is not finite", i / 3);
+  for (size_t i = 0; i < 3 * triangle_count; i++)
+    if (triangles[i] >= point_count)
+      return laves__fail(error, LAVES_ERROR_INPUT, "face %zu uses vertex %lu of %zu", i / 3, (unsigned long)triangles[i],
+                         point_count);
+  input->points = laves__alloc(context, point_count, sizeof *input->points);
+  if (input->points) input->point_count = input->point_capacity = point_count;
+  input->triangles = laves__alloc(context, triangle_count, sizeof *input->triangles);
+  if (tags && input->triangles) input->tags = laves__alloc(context, triangle_count, sizeof *input->tags);
+  if (input->triangles) input->triangle_count = input->triangle_capacity = triangle_count;
+  if (!input->points || !input->triangles || (tags && !input->tags)) return laves__fail_memory(context, error);
+  if (point_count) memcpy(input->points, points, point_count * sizeof *input->points);
+  if (triangle_count) memcpy(input->triangles, triangles, triangle_count * sizeof *input->triangles);
+  if (tags) memcpy(input->tags, tags, triangle_count * sizeof *tags);
+  memcpy(input->format, "triangles", sizeof "triangles");
+  return LAVES_OK;
+}
+
+laves_result laves_domain_from_triangles(laves_context *context, const double *points, size_t point_count,
+                                         const uint32_t *triangles, size_t triangle_count, const int32_t *tags,
+                                         laves_domain **domain, laves_error *error) {
+  *domain = NULL;
+  laves_domain *made = domain_create(context);
+  if (!made) return laves__fail_memory(context, error);
+  laves__surface_input input = {0};
+  laves_result result = copy_triangles(context, points, point_count, triangles, triangle_count, tags, &input, error);
+  if (result == LAVES_OK)
+    result = laves__surface_build(context, &input, made, error);
+  else
+    laves__surface_input_free(context, &input);
+  return finish(result, made, domain);
+}
+
+laves_result laves_domain_from_function(laves_context *context, const laves_function *function, laves_domain **domain,
+                                        laves_error *error) {
+  *domain = NULL;
+  laves_domain *made = domain_create(context);
+  if (!made) return laves__fail_memory(context, error);
+  return finish(laves__function_build(context, function, made, error), made, domain);
+}
+
+void laves_domain_free(laves_domain *domain) {
+  if (!domain) return;
+  laves_context *context = domain->context;
+  if (domain->oracle.free) domain->oracle.free(context, domain->oracle.self);
+  if (domain->tag_names) {
+    for (int i = 0; i < domain->info.tag_count; i++)
+      if (domain->tag_names[i]) laves__free(context, domain->tag_names[i], strlen(domain->tag_names[i]) + 1, 1);
+    laves__free(context, domain->tag_names, (size_t)domain->info.tag_count, sizeof *domain->tag_names);
+  }
+  laves__free(context, domain, 1, sizeof *domain);
+}
+
+void laves_domain_evaluate(const laves_domain *domain, const double *points, size_t count, double *values) {
+  enum { BATCH = 256 };
+  laves__vec3 local[BATCH];
+  for (size_t begin = 0; begin < count; begin += BATCH) {
+    const size_t size = count - begin < BATCH ? count - begin : BATCH;
+    for (size_t i = 0; i < size; i++) {
+      const double *p = points + 3 * (begin + i);
+      local[i] = v3_sub(v3(p[0], p[1], p[2]), domain->oracle.origin);
+    }
+    domain->oracle.evaluate(domain->oracle.self, size, local, values + begin, NULL);
+  }
+}
+
+const char *laves_defect_text(laves_defect defect) {
+  static const char *const texts[] = {
+#define LAVES_DEFECT_TEXT(name, text) text,
+      LAVES_DEFECT_LIST(LAVES_DEFECT_TEXT)
+#undef LAVES_DEFECT_TEXT
+  };
+  return (size_t)defect < LAVES__COUNT_OF(texts) ? texts[defect] : "unknown defect";
+}
+
+void laves_domain_get_info(const laves_domain *domain, laves_domain_info *info) { *info = domain->info; }
+
+const char *laves_domain_tag_name(const laves_domain *domain, int index) {
+  return index >= 0 && index < domain->info.tag_count && domain->tag_names ? domain->tag_names[index] : NULL;
+}
+
+size_t laves_domain_thin_places(const laves_domain *domain, laves_thin_place *places, size_t capacity) {
+  const laves__oracle *oracle = &domain->oracle;
+  if (!oracle->thin_places) return 0;
+  const size_t count = oracle->thin_places(oracle->self, places, capacity);
+  for (size_t i = 0; i < count; i++) {
+    places[i].place[0] += oracle->origin.x;
+    places[i].place[1] += oracle->origin.y;
+    places[i].place[2] += oracle->origin.z;
+  }
+  return count;
+}
