@@ -2,11 +2,11 @@
  *
  * The faces are put into buckets by their lowest vertex (a counting sort), and each bucket, about twenty faces in a
  * usual mesh, is sorted by the other two vertices and the slot, so that equal faces stand side by side. Buckets are
- * independent and done in parallel. To keep memory low the lowest vertices are taken range by range: a range holds about
- * a quarter of all faces, and each range costs one more pass over the tets. */
+ * independent and done in parallel; so are counting and filling, with atomic cursors. To keep memory low the lowest vertices are
+ * taken range by range: a range holds about a quarter of all faces, and each range costs one more pass over the tets. */
 #include "mesh/face_match.h"
 
-#include <string.h>
+#include <stdatomic.h>
 
 enum {
   RANGES = 4,
@@ -72,12 +72,14 @@ static void heap_sort(laves__face_use *uses, size_t count) {
 /* ---- ranges of lowest vertices ---- */
 
 typedef struct matcher {
+  laves_context *context;
+  const char *phase;
   const int32_t (*tets)[4];
   size_t tet_count, vertex_count;
-  uint64_t *start; /* [vertex_count + 1] where the bucket of each lowest vertex starts, over all ranges */
+  _Atomic uint64_t *start; /* [vertex_count + 1] where the bucket of each lowest vertex starts, over all ranges */
   laves__face_use *uses;
   uint64_t first; /* start of the range in hand: uses[0] is number `first` */
-  size_t vertex_begin;
+  size_t vertex_begin, vertex_end;
   laves__face_group_fn *fn;
   void *user;
 } matcher;
@@ -95,47 +97,66 @@ static void sort_corners(const int32_t tet[4], int32_t corner[4], uint8_t index[
   }
 }
 
-/* Counts into start[v + 1], then sums up, so that start[v] is where bucket v begins. */
-static void count_buckets(matcher *m) {
-  for (size_t t = 0; t < m->tet_count; t++) {
+static uint64_t add(matcher *m, int32_t vertex, uint64_t faces) {
+  return atomic_fetch_add_explicit(&m->start[vertex], faces, memory_order_relaxed);
+}
+
+static uint64_t start_of(const matcher *m, size_t vertex) {
+  return atomic_load_explicit(&m->start[vertex], memory_order_relaxed);
+}
+
+static void set_start(matcher *m, size_t vertex, uint64_t start) {
+  atomic_store_explicit(&m->start[vertex], start, memory_order_relaxed);
+}
+
+/* Counts bucket v into start[v + 1]. Counters are shared by all threads: sums don't depend on the order. */
+static void count_block(void *user, size_t begin, size_t end, int worker) {
+  matcher *m = user;
+  (void)worker;
+  for (size_t t = begin; t < end; t++) {
     if (!laves__tet_usable(m->tets[t], m->vertex_count)) continue;
     int32_t corner[4];
     uint8_t index[4];
     sort_corners(m->tets[t], corner, index);
-    m->start[corner[0] + 1] += 3;
-    m->start[corner[1] + 1] += 1;
+    add(m, corner[0] + 1, 3);
+    add(m, corner[1] + 1, 1);
   }
-  for (size_t v = 0; v < m->vertex_count; v++) m->start[v + 1] += m->start[v];
 }
 
-/* Fills the buckets of [vertex_begin, vertex_end). start[v] is used as the cursor of its bucket and afterwards moved
- * back by one place: filled to the end it equals the next bucket's start. */
-static void fill_range(matcher *m, size_t vertex_end) {
-  for (size_t t = 0; t < m->tet_count; t++) {
+/* Puts the faces into the buckets of the range; start[v] is the cursor of bucket v. The order within a bucket depends
+ * on the threads, but the bucket is sorted afterwards and no two of its faces are equal. */
+static void fill_block(void *user, size_t begin, size_t end, int worker) {
+  matcher *m = user;
+  (void)worker;
+  for (size_t t = begin; t < end; t++) {
     if (!laves__tet_usable(m->tets[t], m->vertex_count)) continue;
     int32_t c[4];
     uint8_t index[4];
     sort_corners(m->tets[t], c, index);
     const uint64_t slot = 4 * (uint64_t)t;
-    if ((size_t)c[0] >= m->vertex_begin && (size_t)c[0] < vertex_end) {
-      laves__face_use *use = &m->uses[m->start[c[0]] - m->first];
+    if ((size_t)c[0] >= m->vertex_begin && (size_t)c[0] < m->vertex_end) {
+      laves__face_use *use = &m->uses[add(m, c[0], 3) - m->first];
       use[0] = (laves__face_use){(uint32_t)c[1], (uint32_t)c[2], slot + index[3]};
       use[1] = (laves__face_use){(uint32_t)c[1], (uint32_t)c[3], slot + index[2]};
       use[2] = (laves__face_use){(uint32_t)c[2], (uint32_t)c[3], slot + index[1]};
-      m->start[c[0]] += 3;
     }
-    if ((size_t)c[1] >= m->vertex_begin && (size_t)c[1] < vertex_end)
-      m->uses[m->start[c[1]]++ - m->first] = (laves__face_use){(uint32_t)c[2], (uint32_t)c[3], slot + index[0]};
+    if ((size_t)c[1] >= m->vertex_begin && (size_t)c[1] < m->vertex_end)
+      m->uses[add(m, c[1], 1) - m->first] = (laves__face_use){(uint32_t)c[2], (uint32_t)c[3], slot + index[0]};
   }
-  for (size_t v = vertex_end; v > m->vertex_begin; v--) m->start[v - 1] = v - 1 > m->vertex_begin ? m->start[v - 2] : m->first;
+}
+
+/* After filling, each cursor stands where the next bucket starts: moves them back by one place. */
+static void reset_cursors(matcher *m) {
+  for (size_t v = m->vertex_end - 1; v > m->vertex_begin; v--) set_start(m, v, start_of(m, v - 1));
+  set_start(m, m->vertex_begin, m->first);
 }
 
 /* Sorts buckets and hands out their groups: each bucket belongs to one block, so blocks share nothing. */
 static void group_block(void *user, size_t begin, size_t end, int worker) {
   const matcher *m = user;
   for (size_t v = m->vertex_begin + begin; v < m->vertex_begin + end; v++) {
-    laves__face_use *uses = m->uses + (m->start[v] - m->first);
-    const size_t count = m->start[v + 1] - m->start[v];
+    laves__face_use *uses = m->uses + (start_of(m, v) - m->first);
+    const size_t count = start_of(m, v + 1) - start_of(m, v);
     if (count <= INSERTION_MAX)
       insertion_sort(uses, count);
     else
@@ -150,7 +171,7 @@ static void group_block(void *user, size_t begin, size_t end, int worker) {
 /* The end of the range that begins at `begin`: as many buckets as fit into `capacity`, at least one. */
 static size_t range_end(const matcher *m, size_t begin, size_t capacity) {
   size_t end = begin + 1;
-  while (end < m->vertex_count && m->start[end + 1] - m->start[begin] <= capacity) end++;
+  while (end < m->vertex_count && start_of(m, end + 1) - start_of(m, begin) <= capacity) end++;
   return end;
 }
 
@@ -159,37 +180,52 @@ static size_t largest_range(const matcher *m, size_t capacity) {
   size_t largest = 0;
   for (size_t begin = 0, end; begin < m->vertex_count; begin = end) {
     end = range_end(m, begin, capacity);
-    const size_t faces = m->start[end] - m->start[begin];
+    const size_t faces = start_of(m, end) - start_of(m, begin);
     if (faces > largest) largest = faces;
   }
   return largest;
 }
 
+static bool count_buckets(matcher *m) {
+  if (!laves__parallel_for(m->context, m->phase, m->tet_count, TETS_PER_BLOCK, count_block, m)) return false;
+  for (size_t v = 0; v < m->vertex_count; v++) set_start(m, v + 1, start_of(m, v + 1) + start_of(m, v));
+  return true;
+}
+
+static bool match_range(matcher *m) {
+  m->first = start_of(m, m->vertex_begin);
+  if (!laves__parallel_for(m->context, m->phase, m->tet_count, TETS_PER_BLOCK, fill_block, m)) return false;
+  reset_cursors(m);
+  return laves__parallel_for(m->context, m->phase, m->vertex_end - m->vertex_begin, BUCKETS_PER_BLOCK, group_block, m);
+}
+
 laves_result laves__match_faces(laves_context *context, const char *phase, const int32_t (*tets)[4], size_t tet_count,
                                 size_t vertex_count, laves__face_group_fn *fn, void *user, laves_error *error) {
   laves_result result = LAVES_OK;
-  matcher m = {.tets = tets, .tet_count = tet_count, .vertex_count = vertex_count, .fn = fn, .user = user};
+  matcher m = {.context = context,
+               .phase = phase,
+               .tets = tets,
+               .tet_count = tet_count,
+               .vertex_count = vertex_count,
+               .fn = fn,
+               .user = user};
   size_t largest = 0;
   m.start = laves__alloc_zeroed(context, vertex_count + 1, sizeof *m.start);
   if (!m.start) return laves__fail_memory(context, error);
-  count_buckets(&m);
-  size_t capacity = m.start[vertex_count] / RANGES + 1;
+  bool complete = count_buckets(&m);
+  size_t capacity = start_of(&m, vertex_count) / RANGES + 1;
   if (capacity < RANGE_FACES_MIN) capacity = RANGE_FACES_MIN;
-  largest = largest_range(&m, capacity);
+  if (complete) largest = largest_range(&m, capacity);
   m.uses = laves__alloc(context, largest, sizeof *m.uses);
   if (!m.uses) {
     result = laves__fail_memory(context, error);
     goto clean_up;
   }
-  for (size_t end; m.vertex_begin < vertex_count; m.vertex_begin = end) {
-    end = range_end(&m, m.vertex_begin, capacity);
-    m.first = m.start[m.vertex_begin];
-    fill_range(&m, end);
-    if (!laves__parallel_for(context, phase, end - m.vertex_begin, BUCKETS_PER_BLOCK, group_block, &m)) {
-      result = laves__fail_cancelled(error);
-      goto clean_up;
-    }
+  for (; complete && m.vertex_begin < vertex_count; m.vertex_begin = m.vertex_end) {
+    m.vertex_end = range_end(&m, m.vertex_begin, capacity);
+    complete = match_range(&m);
   }
+  if (!complete) result = laves__fail_cancelled(error);
 clean_up:
   laves__free(context, m.uses, largest, sizeof *m.uses);
   laves__free(context, m.start, vertex_count + 1, sizeof *m.start);
