@@ -1,0 +1,44 @@
+/* What the files of this folder share. Everything here starts from the arrays of a mesh and trusts none of them. */
+#ifndef LAVES_CERTIFY_CERTIFY_H
+#define LAVES_CERTIFY_CERTIFY_H
+
+#include "mesh/mesh.h"
+
+/* A boundary as recomputed from the tets: triangles outwards, in the order of their tets. */
+typedef struct laves__boundary {
+  laves_context *context;
+  size_t count;
+  int32_t (*faces)[3];
+} laves__boundary;
+
+void laves__boundary_free(laves__boundary *boundary);
+
+/* Indices, orientation, conformity, components, and the boundary; fills the fields of those names.
+ * *boundary: owned by the caller on success. */
+laves_result laves__check_topology(laves_context *context, const laves_mesh *mesh, laves_check *check, laves__boundary *boundary,
+                                   laves_error *error);
+
+/* Edges, fans, components and genus of a boundary, and how many of the mesh's stored faces differ from it. */
+laves_result laves__check_boundary(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
+                                   laves_check *check, laves_error *error);
+
+/* Angles, ratios, volume and area. */
+laves_result laves__check_shapes(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
+                                 laves_check *check, laves_error *error);
+
+/* Shortest, longest and mean edge, each edge once. */
+laves_result laves__check_edges(laves_context *context, const laves_mesh *mesh, laves_check *check, laves_error *error);
+
+/* The corners of a tet; false when it has none that can be measured (bad indices, or points that are not finite). */
+bool laves__tet_corners(const laves_mesh *mesh, size_t tet, laves__vec3 corners[4]);
+
+/* ---- sorting ---- */
+
+typedef struct laves__keyed {
+  uint64_t key, value;
+} laves__keyed;
+
+/* Sorts by key, keeping the order of equal keys; `scratch` has room for as many. */
+void laves__sort_keyed(laves__keyed *items, laves__keyed *scratch, size_t count);
+
+#endif

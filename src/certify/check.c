@@ -1,0 +1,32 @@
+/* The check of a mesh: everything that laves_check says, recomputed from the arrays alone.
+ *
+ * It shares the search for equal faces and the measures of a tet with the rest of the library, and nothing with the
+ * stages that make meshes. Garbage is expected: indices are tested before use, and points need not be finite. */
+#include <string.h>
+
+#include "certify/certify.h"
+
+static bool is_valid(const laves_check *check) {
+  return check->bad_indices == 0 && check->inverted_tets == 0 && check->nonconforming_faces == 0 &&
+         check->nonmanifold_edges == 0 && check->nonmanifold_vertices == 0;
+}
+
+laves_result laves_check_mesh(laves_context *context, const laves_mesh *mesh, const laves_domain *domain, laves_check *check,
+                              laves_error *error) {
+  laves__progress_reset(context);
+  memset(check, 0, sizeof *check);
+  check->vertices = mesh->vertex_count;
+  check->tets = mesh->tet_count;
+  check->faces = mesh->face_count;
+  check->domain_volume = NAN;
+  (void)domain;
+
+  laves__boundary boundary = {0};
+  laves_result result = laves__check_topology(context, mesh, check, &boundary, error);
+  if (result == LAVES_OK) result = laves__check_boundary(context, mesh, &boundary, check, error);
+  if (result == LAVES_OK) result = laves__check_shapes(context, mesh, &boundary, check, error);
+  if (result == LAVES_OK) result = laves__check_edges(context, mesh, check, error);
+  laves__boundary_free(&boundary);
+  check->valid = result == LAVES_OK && is_valid(check);
+  return result;
+}
