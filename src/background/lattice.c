@@ -1,0 +1,147 @@
+/* Bricks, cells and records: how sites of the tiling find one another.  See lattice.h for the drawing. */
+#include "background/lattice.h"
+
+#include <string.h>
+
+/* 2^27 bricks are 5 * 10^10 tetrahedra of space around the solid; their directory is half a gibibyte. */
+static const double directory_max = 134217728.0;
+
+/* Cells of room on every side: sites within one edge of the surface and their stars must lie in the directory. */
+enum { ROOM = 2 };
+
+laves_result laves__lattice_create(laves_context *context, laves__box3 bounds, laves__lattice *lattice, laves_error *error) {
+  memset(lattice, 0, sizeof *lattice);
+  lattice->context = context;
+  const double lower[3] = {bounds.lower.x, bounds.lower.y, bounds.lower.z};
+  const double upper[3] = {bounds.upper.x, bounds.upper.y, bounds.upper.z};
+  double total = 1;
+  for (int axis = 0; axis < 3; axis++) {
+    const double brick_side = LAVES__CELL_SIDE * LAVES__BRICK_SIDE, room = ROOM * LAVES__CELL_SIDE;
+    const double first = floor((lower[axis] - room) / brick_side), last = floor((upper[axis] + room) / brick_side);
+    total *= last - first + 1;
+    if (!(total <= directory_max) || !(fabs(first) < 1e8))
+      return laves__fail(error, LAVES_ERROR_OPTION,
+                         "the size is too small for the box around the solid, which is %.3g sizes long; choose a larger size",
+                         fmax(fmax(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]));
+    lattice->lower[axis] = (int32_t)first * LAVES__BRICK_SIDE;
+    lattice->bricks[axis] = (int32_t)(last - first) + 1;
+  }
+  lattice->directory_count = (size_t)lattice->bricks[0] * (size_t)lattice->bricks[1] * (size_t)lattice->bricks[2];
+  lattice->directory = laves__alloc(context, lattice->directory_count, sizeof *lattice->directory);
+  if (!lattice->directory) return laves__fail_memory(context, error);
+  for (size_t i = 0; i < lattice->directory_count; i++) lattice->directory[i] = LAVES__OUT;
+  return LAVES_OK;
+}
+
+void laves__lattice_free(laves__lattice *lattice) {
+  laves_context *context = lattice->context;
+  if (!context) return;
+  laves__free(context, lattice->directory, lattice->directory_count, sizeof *lattice->directory);
+  laves__free(context, lattice->brick, lattice->brick_capacity, sizeof *lattice->brick);
+  laves__free(context, lattice->record, lattice->record_capacity, sizeof *lattice->record);
+  memset(lattice, 0, sizeof *lattice);
+}
+
+/* The directory slot of the brick that holds a cell, or -1 beyond the directory; *inside is the cell within the brick. */
+static int64_t find_slot(const laves__lattice *lattice, int32_t x, int32_t y, int32_t z, int *inside) {
+  const int32_t dx = x - lattice->lower[0], dy = y - lattice->lower[1], dz = z - lattice->lower[2];
+  if (dx < 0 || dy < 0 || dz < 0) return -1;
+  const int32_t bx = dx / LAVES__BRICK_SIDE, by = dy / LAVES__BRICK_SIDE, bz = dz / LAVES__BRICK_SIDE;
+  if (bx >= lattice->bricks[0] || by >= lattice->bricks[1] || bz >= lattice->bricks[2]) return -1;
+  *inside =
+      (dx % LAVES__BRICK_SIDE) + LAVES__BRICK_SIDE * ((dy % LAVES__BRICK_SIDE) + LAVES__BRICK_SIDE * (dz % LAVES__BRICK_SIDE));
+  return bx + (int64_t)lattice->bricks[0] * (by + (int64_t)lattice->bricks[1] * bz);
+}
+
+int32_t laves__lattice_cell(const laves__lattice *lattice, int32_t x, int32_t y, int32_t z) {
+  int inside = 0;
+  const int64_t slot = find_slot(lattice, x, y, z, &inside);
+  if (slot < 0) return LAVES__OUT;
+  const int32_t entry = lattice->directory[slot];
+  return entry < 0 ? entry : lattice->brick[entry].cell[inside];
+}
+
+int32_t laves__lattice_add_record(laves__lattice *lattice, int32_t x, int32_t y, int32_t z) {
+  int inside = 0;
+  const int64_t slot = find_slot(lattice, x, y, z, &inside);
+  LAVES_ASSERT(slot >= 0);
+  int32_t entry = lattice->directory[slot];
+  if (entry < 0) {
+    if (!laves__grow(lattice->context, &lattice->brick, &lattice->brick_capacity, lattice->brick_count + 1,
+                     sizeof *lattice->brick))
+      return -1;
+    for (int i = 0; i < LAVES__BRICK_CELLS; i++) lattice->brick[lattice->brick_count].cell[i] = entry;
+    entry = lattice->directory[slot] = (int32_t)lattice->brick_count++;
+  }
+  const int32_t known = lattice->brick[entry].cell[inside];
+  if (known >= 0) return known;
+  if (lattice->record_count >= INT32_MAX / LAVES__C15_SITES) return -1;
+  if (!laves__grow(lattice->context, &lattice->record, &lattice->record_capacity, lattice->record_count + 1,
+                   sizeof *lattice->record))
+    return -1;
+  laves__record *record = &lattice->record[lattice->record_count];
+  const int8_t sign = known == LAVES__OUT ? 1 : -1;
+  memset(record, 0, sizeof *record);
+  record->xyz[0] = x;
+  record->xyz[1] = y;
+  record->xyz[2] = z;
+  for (int site = 0; site < LAVES__C15_SITES; site++) {
+    record->phi[site] = sign * HUGE_VAL;
+    record->hint[site] = LAVES__NO_HINT;
+    record->sign[site] = record->label[site] = sign;
+    record->vertex[site] = -1;
+    record->depth[site] = UINT8_MAX;
+  }
+  return lattice->brick[entry].cell[inside] = (int32_t)lattice->record_count++;
+}
+
+void laves__lattice_link(laves__lattice *lattice) {
+  for (size_t i = 0; i < lattice->record_count; i++) {
+    laves__record *r = &lattice->record[i];
+    int k = 0;
+    for (int dz = -1; dz <= 1; dz++)
+      for (int dy = -1; dy <= 1; dy++)
+        for (int dx = -1; dx <= 1; dx++)
+          r->around[k++] = laves__lattice_cell(lattice, r->xyz[0] + dx, r->xyz[1] + dy, r->xyz[2] + dz);
+  }
+}
+
+laves__vec3 laves__site_position(const int32_t cell[3], int site) {
+  const double unit = 1 / LAVES__C15_MEAN_EDGE;
+  const int8_t *p = laves__c15_site[site];
+  return v3(((double)cell[0] * LAVES__C15_PERIOD + p[0]) * unit, ((double)cell[1] * LAVES__C15_PERIOD + p[1]) * unit,
+            ((double)cell[2] * LAVES__C15_PERIOD + p[2]) * unit);
+}
+
+bool laves__tet_kept(const laves__lattice *lattice, const laves__site corners[4]) {
+  bool any_in = false;
+  for (int k = 0; k < 4; k++) {
+    const laves__label label = laves__site_label(lattice, corners[k]);
+    if (label == LAVES__LABEL_OUT) return false;
+    any_in |= label == LAVES__LABEL_IN;
+  }
+  return any_in;
+}
+
+/* The link of a site holds its neighbours, so the labels of those decide every tet of the star. */
+uint32_t laves__star_kept(const laves__lattice *lattice, int32_t record, int site) {
+  const laves__record *r = &lattice->record[record];
+  const laves__label own = (laves__label)r->label[site];
+  if (own == LAVES__LABEL_OUT) return 0;
+  uint32_t kept = 0;
+  for (int k = 0; k < laves__c15_star_size[site]; k++) {
+    const laves__c15_star_tet star = laves__c15_star[site][k];
+    const int ox = star.cell % 3, oy = star.cell / 3 % 3, oz = star.cell / 9;
+    bool any_in = own == LAVES__LABEL_IN, any_out = false;
+    for (int j = 0; j < 4 && !any_out; j++) {
+      if (j == star.corner) continue;
+      const laves__c15_corner corner = laves__c15_tet[star.tet][j];
+      const int cell = ox + (corner.shift & 1) + 3 * (oy + ((corner.shift >> 1) & 1)) + 9 * (oz + (corner.shift >> 2));
+      const laves__label label = laves__site_label(lattice, (laves__site){r->around[cell], corner.site});
+      any_out = label == LAVES__LABEL_OUT;
+      any_in |= label == LAVES__LABEL_IN;
+    }
+    if (any_in && !any_out) kept |= UINT32_C(1) << k;
+  }
+  return kept;
+}

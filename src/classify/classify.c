@@ -1,0 +1,214 @@
+/* Classification of the lattice, top down.
+ *
+ * Cubes of bricks are asked of the oracle as a whole and halved while it can't decide; then the cells of the undecided
+ * bricks are asked, in parallel; the cells that remain get records and the oracle's value at their sites. Every question
+ * is about a region widened by the longest edge, so that an edge that starts in a decided cell ends on the same side.
+ *
+ * Where phi is a distance, a value also speaks for the sites around: if |phi(u)| exceeds |u - v| by more than the longest
+ * edge, v has the sign of u and no edge at v crosses. That spares about half of the calls.
+ *
+ * Departure from the paper (section 4.3): it classifies tiles by their circumspheres on a grid of distances; we ask the
+ * domain itself, and only where it matters. */
+#include "classify/classify.h"
+
+typedef struct undecided {
+  int32_t (*brick)[3]; /* brick coordinates in the directory */
+  size_t count, capacity;
+} undecided;
+
+typedef struct carving {
+  const laves__frame *frame;
+  laves__lattice *lattice;
+  undecided list;
+  int8_t *cell_side; /* [list.count][LAVES__BRICK_CELLS] */
+  bool out_of_memory;
+} carving;
+
+/* The side of a cube of cells, widened by the longest edge. */
+static laves__side cube_side(const carving *c, const int32_t first_cell[3], int cells) {
+  const double half = 0.5 * cells * LAVES__CELL_SIDE;
+  const laves__vec3 corner = laves__site_position(first_cell, 0);
+  const laves__vec3 centre = v3(corner.x + half, corner.y + half, corner.z + half);
+  static const double widen = LAVES__C15_LONGEST_EDGE * (1 + 1e-9);
+  return laves__frame_side(c->frame, centre, half + widen);
+}
+
+static size_t slot_of(const laves__lattice *l, const int32_t b[3]) {
+  return (size_t)b[0] + (size_t)l->bricks[0] * ((size_t)b[1] + (size_t)l->bricks[1] * (size_t)b[2]);
+}
+
+/* Decides the bricks [first, first + span) in each axis, as far as they lie in the directory. */
+static bool carve_bricks(carving *c, const int32_t first[3], int32_t span) {
+  laves__lattice *l = c->lattice;
+  int32_t last[3], cell[3];
+  for (int axis = 0; axis < 3; axis++) {
+    if (first[axis] >= l->bricks[axis]) return true;
+    last[axis] = first[axis] + span < l->bricks[axis] ? first[axis] + span : l->bricks[axis];
+    cell[axis] = l->lower[axis] + first[axis] * LAVES__BRICK_SIDE;
+  }
+  if (laves__cancelled(l->context, "classify", 0)) return false;
+  const laves__side side = cube_side(c, cell, span * LAVES__BRICK_SIDE);
+  if (side == LAVES__OUTSIDE) return true;
+  if (side == LAVES__INSIDE) {
+    for (int32_t z = first[2]; z < last[2]; z++)
+      for (int32_t y = first[1]; y < last[1]; y++)
+        for (int32_t x = first[0]; x < last[0]; x++) l->directory[slot_of(l, (int32_t[3]){x, y, z})] = LAVES__IN;
+    return true;
+  }
+  if (span == 1) {
+    if (!laves__grow(l->context, &c->list.brick, &c->list.capacity, c->list.count + 1, sizeof *c->list.brick)) {
+      c->out_of_memory = true;
+      return false;
+    }
+    for (int axis = 0; axis < 3; axis++) c->list.brick[c->list.count][axis] = first[axis];
+    c->list.count++;
+    return true;
+  }
+  const int32_t half = span / 2;
+  for (int child = 0; child < 8; child++) {
+    const int32_t corner[3] = {first[0] + (child & 1) * half, first[1] + ((child >> 1) & 1) * half,
+                               first[2] + (child >> 2) * half};
+    if (!carve_bricks(c, corner, half)) return false;
+  }
+  return true;
+}
+
+static void cell_of(const carving *c, size_t brick, int inside, int32_t cell[3]) {
+  const int offset[3] = {inside % LAVES__BRICK_SIDE, inside / LAVES__BRICK_SIDE % LAVES__BRICK_SIDE,
+                         inside / (LAVES__BRICK_SIDE * LAVES__BRICK_SIDE)};
+  for (int axis = 0; axis < 3; axis++)
+    cell[axis] = c->lattice->lower[axis] + c->list.brick[brick][axis] * LAVES__BRICK_SIDE + offset[axis];
+}
+
+static void carve_cells(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  carving *c = user;
+  for (size_t brick = begin; brick < end; brick++)
+    for (int inside = 0; inside < LAVES__BRICK_CELLS; inside++) {
+      int32_t cell[3];
+      cell_of(c, brick, inside, cell);
+      c->cell_side[brick * LAVES__BRICK_CELLS + (size_t)inside] = (int8_t)cube_side(c, cell, 1);
+    }
+}
+
+/* Bricks and records for what could not be decided. Serial, so that records have the same numbers in every run. */
+static bool make_records(carving *c) {
+  laves__lattice *l = c->lattice;
+  size_t records = 0;
+  for (size_t i = 0; i < c->list.count * LAVES__BRICK_CELLS; i++) records += c->cell_side[i] == LAVES__UNDECIDED;
+  if (!laves__grow(l->context, &l->brick, &l->brick_capacity, c->list.count, sizeof *l->brick)) return false;
+  l->record = laves__alloc(l->context, records + records / 8 + 64, sizeof *l->record);
+  if (!l->record) return false;
+  l->record_capacity = records + records / 8 + 64;
+  for (size_t brick = 0; brick < c->list.count; brick++) {
+    const int32_t index = (int32_t)l->brick_count++;
+    l->directory[slot_of(l, c->list.brick[brick])] = index;
+    const int8_t *side = c->cell_side + brick * LAVES__BRICK_CELLS;
+    for (int inside = 0; inside < LAVES__BRICK_CELLS; inside++)
+      l->brick[index].cell[inside] = side[inside] == LAVES__INSIDE ? LAVES__IN : LAVES__OUT;
+    for (int inside = 0; inside < LAVES__BRICK_CELLS; inside++) {
+      int32_t cell[3];
+      cell_of(c, brick, inside, cell);
+      if (side[inside] == LAVES__UNDECIDED && laves__lattice_add_record(l, cell[0], cell[1], cell[2]) < 0) return false;
+    }
+  }
+  return true;
+}
+
+/* Sites asked first, spread over the cell: the face-centred cubic lattice of colour 0. */
+enum { PROBES = 4 };
+
+/* Whether a value already known speaks for the point; then *phi has its sign and infinite size. */
+static bool spoken_for(const laves__vec3 *at, const double *value, int known, laves__vec3 point, double *phi) {
+  for (int u = 0; u < known; u++) {
+    const double room = fabs(value[u]) - LAVES__C15_LONGEST_EDGE * (1 + 1e-6);
+    if (room > 0 && room * room > v3_norm2(v3_sub(at[u], point))) {
+      *phi = value[u] < 0 ? -HUGE_VAL : HUGE_VAL;
+      return true;
+    }
+  }
+  return false;
+}
+
+static void evaluate_record(const laves__frame *frame, laves__record *r) {
+  laves__vec3 at[LAVES__C15_SITES];
+  double value[LAVES__C15_SITES];
+  uint32_t hint[LAVES__C15_SITES];
+  uint8_t site_of[LAVES__C15_SITES];
+  for (int site = 0; site < LAVES__C15_SITES; site++) {
+    at[site] = laves__site_position(r->xyz, site);
+    site_of[site] = (uint8_t)site;
+  }
+  int asked = LAVES__C15_SITES;
+  if (!frame->oracle->is_distance) {
+    laves__frame_evaluate(frame, LAVES__C15_SITES, at, value, hint);
+  } else {
+    laves__frame_evaluate(frame, PROBES, at, value, hint);
+    asked = PROBES;
+    for (int site = PROBES; site < LAVES__C15_SITES; site++) {
+      double phi;
+      if (spoken_for(at, value, PROBES, at[site], &phi)) {
+        r->phi[site] = phi;
+        continue;
+      }
+      at[asked] = at[site];
+      site_of[asked++] = (uint8_t)site;
+    }
+    laves__frame_evaluate(frame, (size_t)(asked - PROBES), at + PROBES, value + PROBES, hint + PROBES);
+  }
+  for (int i = 0; i < asked; i++) {
+    r->phi[site_of[i]] = isnan(value[i]) ? HUGE_VAL : value[i]; /* what has no value is not inside */
+    r->hint[site_of[i]] = hint[i];
+  }
+  for (int site = 0; site < LAVES__C15_SITES; site++) r->sign[site] = r->label[site] = r->phi[site] < 0 ? -1 : 1;
+}
+
+static void evaluate_records(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  carving *c = user;
+  for (size_t i = begin; i < end; i++) evaluate_record(c->frame, &c->lattice->record[i]);
+}
+
+/* A solid that reaches the edge of the directory is larger than its bounds say. */
+static const laves__record *find_overflow(const laves__lattice *l) {
+  for (size_t i = 0; i < l->record_count; i++) {
+    const laves__record *r = &l->record[i];
+    bool at_edge = false;
+    for (int axis = 0; axis < 3; axis++)
+      at_edge |= r->xyz[axis] == l->lower[axis] || r->xyz[axis] == l->lower[axis] + l->bricks[axis] * LAVES__BRICK_SIDE - 1;
+    for (int site = 0; at_edge && site < LAVES__C15_SITES; site++)
+      if (r->sign[site] < 0) return r;
+  }
+  return NULL;
+}
+
+laves_result laves__classify(const laves__frame *frame, laves__lattice *lattice, laves_error *error) {
+  laves_context *context = lattice->context;
+  carving c = {.frame = frame, .lattice = lattice};
+  laves_result result = LAVES_OK;
+  int32_t span = 1;
+  while (span < lattice->bricks[0] || span < lattice->bricks[1] || span < lattice->bricks[2]) span *= 2;
+  bool done = carve_bricks(&c, (int32_t[3]){0, 0, 0}, span);
+  if (done && c.list.count) {
+    c.cell_side = laves__alloc(context, c.list.count, LAVES__BRICK_CELLS);
+    c.out_of_memory = !c.cell_side;
+    done = c.cell_side && laves__parallel_for(context, "classify", c.list.count, 1, carve_cells, &c);
+    if (done && !make_records(&c)) {
+      c.out_of_memory = true;
+      done = false;
+    }
+    done = done && laves__parallel_for(context, "classify", lattice->record_count, 4, evaluate_records, &c);
+    const laves__record *overflow = done ? find_overflow(lattice) : NULL;
+    if (overflow) {
+      const laves__vec3 at = laves__frame_to_input(frame, laves__site_position(overflow->xyz, 0));
+      result =
+          laves__fail(error, LAVES_ERROR_INPUT,
+                      "the solid reaches beyond its bounds near (%g, %g, %g); give bounds that contain it", at.x, at.y, at.z);
+    }
+    if (done) laves__lattice_link(lattice);
+  }
+  if (!done) result = c.out_of_memory ? laves__fail_memory(context, error) : laves__fail_cancelled(error);
+  laves__free(context, c.cell_side, c.list.count, LAVES__BRICK_CELLS);
+  laves__free(context, c.list.brick, c.list.capacity, sizeof *c.list.brick);
+  return result;
+}

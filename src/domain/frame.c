@@ -1,0 +1,60 @@
+/* Coordinates between the lattice and the domain. */
+#include "domain/frame.h"
+
+enum { CHUNK = 64 };
+
+static laves__vec3 to_local(const laves__frame *frame, laves__vec3 lattice) {
+  return v3_mad(frame->centre, m3_mul(&frame->rotation, lattice), frame->size);
+}
+
+static laves__vec3 from_local(const laves__frame *frame, laves__vec3 local) {
+  return m3_mul_transposed(&frame->rotation, v3_scale(v3_sub(local, frame->centre), 1 / frame->size));
+}
+
+laves__vec3 laves__frame_to_input(const laves__frame *frame, laves__vec3 lattice) {
+  return v3_add(frame->oracle->origin, to_local(frame, lattice));
+}
+
+laves__box3 laves__frame_bounds(const laves__frame *frame) {
+  const laves__box3 b = frame->oracle->bounds;
+  laves__box3 bounds = box3_empty();
+  for (int corner = 0; corner < 8; corner++) {
+    const laves__vec3 local =
+        v3(corner & 1 ? b.upper.x : b.lower.x, corner & 2 ? b.upper.y : b.lower.y, corner & 4 ? b.upper.z : b.lower.z);
+    bounds = box3_add(bounds, from_local(frame, local));
+  }
+  return bounds;
+}
+
+void laves__frame_evaluate(const laves__frame *frame, size_t count, const laves__vec3 *points, double *phi, uint32_t *hints) {
+  laves__vec3 local[CHUNK];
+  const double per_size = 1 / frame->size;
+  for (size_t begin = 0; begin < count; begin += CHUNK) {
+    const size_t n = count - begin < CHUNK ? count - begin : CHUNK;
+    for (size_t i = 0; i < n; i++) local[i] = to_local(frame, points[begin + i]);
+    frame->oracle->evaluate(frame->oracle->self, n, local, phi + begin, hints ? hints + begin : NULL);
+    for (size_t i = 0; i < n; i++) phi[begin + i] *= per_size;
+  }
+}
+
+bool laves__frame_project(const laves__frame *frame, laves__vec3 point, double reach, uint32_t *hint, laves__vec3 *foot,
+                          laves__vec3 *normal) {
+  const laves__oracle *oracle = frame->oracle;
+  laves__vec3 local_foot, local_normal;
+  if (!oracle->project(oracle->self, to_local(frame, point), reach * frame->size, hint, &local_foot, &local_normal)) return false;
+  *foot = from_local(frame, local_foot);
+  *normal = m3_mul_transposed(&frame->rotation, local_normal);
+  return v3_finite(*foot) && v3_finite(*normal);
+}
+
+/* Half the extent, along one local axis, of a turned cube. */
+static double turned_half(laves__vec3 row, double half) { return half * (fabs(row.x) + fabs(row.y) + fabs(row.z)); }
+
+laves__side laves__frame_side(const laves__frame *frame, laves__vec3 centre, double half) {
+  static const double sqrt3 = 1.7320508075688774;
+  const double rounding = 1 + 1e-12; /* covers the rounding of the transform itself */
+  const double h = half * frame->size * rounding;
+  const laves__vec3 *row = frame->rotation.row;
+  const laves__vec3 extent = v3(turned_half(row[0], h), turned_half(row[1], h), turned_half(row[2], h));
+  return frame->oracle->side(frame->oracle->self, to_local(frame, centre), h * sqrt3, extent);
+}

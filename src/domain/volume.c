@@ -1,0 +1,132 @@
+/* Volume and principal axes of a solid that can only be asked where its inside is.
+ *
+ * An octree is cut down while the oracle can't decide; decided boxes count exactly, and the boxes that remain are sampled
+ * with the R3 sequence of [roberts2018], a Kronecker sequence of low discrepancy, so the error falls nearly as 1/n and is
+ * confined to a thin layer around the surface. (Paper, section 4.2, which samples the whole bounding box.) */
+#include "domain/frame.h"
+
+enum {
+  LEVELS = 6,        /* of the octree: 64 boxes along each axis at the end */
+  LEAF_SAMPLES = 64, /* in each undecided box */
+  AXES_SAMPLES = 4096,
+  CHUNK = 64,
+};
+
+/* 1/g, 1/g^2, 1/g^3 for the root g of x^4 = x + 1. */
+static const laves__vec3 r3_step = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+
+static laves__vec3 r3_point(const laves__box3 *box, size_t i) {
+  const double n = (double)(i + 1);
+  const double x = n * r3_step.x, y = n * r3_step.y, z = n * r3_step.z;
+  const laves__vec3 u = v3(x - floor(x), y - floor(y), z - floor(z)), e = v3_sub(box->upper, box->lower);
+  return v3(box->lower.x + u.x * e.x, box->lower.y + u.y * e.y, box->lower.z + u.z * e.z);
+}
+
+/* The share of a box that is inside, by samples. */
+static double sampled_share(const laves__oracle *oracle, const laves__box3 *box) {
+  laves__vec3 points[LEAF_SAMPLES];
+  double phi[LEAF_SAMPLES];
+  int inside = 0;
+  for (int i = 0; i < LEAF_SAMPLES; i++) points[i] = r3_point(box, (size_t)i);
+  oracle->evaluate(oracle->self, LEAF_SAMPLES, points, phi, NULL);
+  for (int i = 0; i < LEAF_SAMPLES; i++) inside += phi[i] < 0;
+  return (double)inside / LEAF_SAMPLES;
+}
+
+static double box_volume(const laves__oracle *oracle, laves__box3 box, int level) {
+  const laves__vec3 half = v3_scale(v3_sub(box.upper, box.lower), 0.5), centre = box3_centre(box);
+  const double volume = 8 * half.x * half.y * half.z;
+  switch (oracle->side(oracle->self, centre, v3_norm(half), half)) {
+    case LAVES__OUTSIDE:
+      return 0;
+    case LAVES__INSIDE:
+      return volume;
+    case LAVES__UNDECIDED:
+      break;
+  }
+  if (level == LEVELS) return volume * sampled_share(oracle, &box);
+  double sum = 0;
+  for (int child = 0; child < 8; child++) {
+    const laves__vec3 lower =
+        v3(child & 1 ? centre.x : box.lower.x, child & 2 ? centre.y : box.lower.y, child & 4 ? centre.z : box.lower.z);
+    sum += box_volume(oracle, (laves__box3){lower, v3_add(lower, half)}, level + 1);
+  }
+  return sum;
+}
+
+double laves__domain_volume(const laves__oracle *oracle) {
+  return isfinite(oracle->volume) ? oracle->volume : box_volume(oracle, oracle->bounds, 0);
+}
+
+/* Eigenvectors of a symmetric matrix by cyclic Jacobi rotations; columns of `axes`, largest eigenvalue first. */
+static void eigenvectors(double m[3][3], double axes[3][3]) {
+  enum { SWEEPS = 32 };
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) axes[i][j] = i == j;
+  for (int sweep = 0; sweep < SWEEPS; sweep++)
+    for (int p = 0; p < 2; p++)
+      for (int q = p + 1; q < 3; q++) {
+        if (m[p][q] == 0) continue;
+        const double theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
+        const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+        const double c = 1 / sqrt(t * t + 1), s = t * c;
+        for (int k = 0; k < 3; k++) {
+          const double a = m[k][p], b = m[k][q];
+          m[k][p] = c * a - s * b;
+          m[k][q] = s * a + c * b;
+        }
+        for (int k = 0; k < 3; k++) {
+          const double a = m[p][k], b = m[q][k];
+          m[p][k] = c * a - s * b;
+          m[q][k] = s * a + c * b;
+          const double u = axes[k][p], v = axes[k][q];
+          axes[k][p] = c * u - s * v;
+          axes[k][q] = s * u + c * v;
+        }
+      }
+}
+
+laves__mat3 laves__principal_axes(const laves__oracle *oracle) {
+  laves__mat3 rotation = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  double sum[3] = {0, 0, 0}, square[3][3] = {{0}};
+  size_t inside = 0;
+  for (size_t begin = 0; begin < AXES_SAMPLES; begin += CHUNK) {
+    laves__vec3 points[CHUNK];
+    double phi[CHUNK];
+    for (size_t i = 0; i < CHUNK; i++) points[i] = r3_point(&oracle->bounds, begin + i);
+    oracle->evaluate(oracle->self, CHUNK, points, phi, NULL);
+    for (size_t i = 0; i < CHUNK; i++) {
+      if (!(phi[i] < 0)) continue;
+      const double p[3] = {points[i].x, points[i].y, points[i].z};
+      for (int a = 0; a < 3; a++) {
+        sum[a] += p[a];
+        for (int b = 0; b < 3; b++) square[a][b] += p[a] * p[b];
+      }
+      inside++;
+    }
+  }
+  if (inside < 4) return rotation;
+  double axes[3][3];
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++)
+      square[a][b] = square[a][b] / (double)inside - sum[a] * sum[b] / ((double)inside * (double)inside);
+  double diagonal[3][3];
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) diagonal[a][b] = square[a][b];
+  eigenvectors(diagonal, axes);
+  int order[3] = {0, 1, 2};
+  for (int i = 0; i < 2; i++)
+    for (int j = i + 1; j < 3; j++)
+      if (diagonal[order[j]][order[j]] > diagonal[order[i]][order[i]]) {
+        const int k = order[i];
+        order[i] = order[j];
+        order[j] = k;
+      }
+  laves__vec3 column[3];
+  for (int i = 0; i < 2; i++) column[i] = v3(axes[0][order[i]], axes[1][order[i]], axes[2][order[i]]);
+  column[2] = v3_cross(column[0], column[1]);
+  rotation.row[0] = v3(column[0].x, column[1].x, column[2].x);
+  rotation.row[1] = v3(column[0].y, column[1].y, column[2].y);
+  rotation.row[2] = v3(column[0].z, column[1].z, column[2].z);
+  return rotation;
+}

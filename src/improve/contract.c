@@ -1,0 +1,231 @@
+/* Edge contraction: b is merged into a.
+ *
+ * Cures what no movement can: a boundary edge with four or five tets, a vertex with too many or too few. Topology is kept
+ * by the link condition [dey1999], on the layer with its boundary closed by one far vertex: every vertex that is a
+ * neighbour of both a and b must form a triangle with ab, every edge seen by both a tetrahedron, and likewise on the
+ * boundary. A surface vertex may only go into another one along a boundary edge. */
+#include "improve/contract.h"
+
+#include "improve/smooth.h"
+
+enum { NEIGHBOURS_MAX = 96 };
+static const double deviation_max = 0.10; /* sizes: faces after the contraction may be this far from the surface */
+static const double alignment_min = 0.8;  /* cosine between face normal and surface normal */
+
+typedef struct ring {
+  int32_t tet[NEIGHBOURS_MAX]; /* that hold both ends */
+  int tet_count;
+  int32_t vertex[NEIGHBOURS_MAX]; /* the other vertices of those */
+  int vertex_count;
+} ring;
+
+static bool holds(const int32_t *list, int count, int32_t value) {
+  for (int i = 0; i < count; i++)
+    if (list[i] == value) return true;
+  return false;
+}
+
+static bool find_ring(const laves__layer *layer, int32_t a, int32_t b, ring *r) {
+  r->tet_count = r->vertex_count = 0;
+  const laves__star *star = &layer->star[b];
+  for (int i = 0; i < star->count; i++) {
+    const int32_t t = star->tet[i];
+    if (laves__layer_corner(layer, t, a) < 0) continue;
+    if (r->tet_count == NEIGHBOURS_MAX || r->vertex_count + 2 > NEIGHBOURS_MAX) return false;
+    r->tet[r->tet_count++] = t;
+    for (int k = 0; k < 4; k++) {
+      const int32_t v = layer->tet[t][k];
+      if (v != a && v != b && !holds(r->vertex, r->vertex_count, v)) r->vertex[r->vertex_count++] = v;
+    }
+  }
+  return r->tet_count > 0;
+}
+
+/* Whether v and w are joined by a boundary edge; v moves. */
+static bool is_boundary_edge(const laves__layer *layer, int32_t v, int32_t w) {
+  if (layer->depth[v] != 0 || layer->depth[w] != 0) return false;
+  const laves__star *star = &layer->star[v];
+  for (int i = 0; i < star->count; i++) {
+    const int32_t t = star->tet[i];
+    if (laves__layer_corner(layer, t, w) < 0) continue;
+    for (int k = 0; k < 4; k++)
+      if (layer->tet[t][k] != v && layer->tet[t][k] != w && laves__layer_is_boundary_face(layer, t, k)) return true;
+  }
+  return false;
+}
+
+static bool is_boundary_triangle(const laves__layer *layer, const ring *r, int32_t a, int32_t b, int32_t x) {
+  for (int i = 0; i < r->tet_count; i++) {
+    if (laves__layer_corner(layer, r->tet[i], x) < 0) continue;
+    for (int k = 0; k < 4; k++) {
+      const int32_t v = layer->tet[r->tet[i]][k];
+      if (v != a && v != b && v != x && laves__layer_is_boundary_face(layer, r->tet[i], k)) return true;
+    }
+  }
+  return false;
+}
+
+static int collect_neighbours(const laves__layer *layer, int32_t v, int32_t list[4 * NEIGHBOURS_MAX]) {
+  int count = 0;
+  const laves__star *star = &layer->star[v];
+  for (int i = 0; i < star->count; i++)
+    for (int k = 0; k < 4; k++) {
+      const int32_t w = layer->tet[star->tet[i]][k];
+      if (w == v || holds(list, count, w)) continue;
+      if (count == 4 * NEIGHBOURS_MAX) return -1;
+      list[count++] = w;
+    }
+  return count;
+}
+
+static bool star_has_triangle(const laves__layer *layer, int32_t v, int32_t x, int32_t y) {
+  const laves__star *star = &layer->star[v];
+  for (int i = 0; i < star->count; i++)
+    if (laves__layer_corner(layer, star->tet[i], x) >= 0 && laves__layer_corner(layer, star->tet[i], y) >= 0) return true;
+  return false;
+}
+
+static bool ring_has_edge(const laves__layer *layer, const ring *r, int32_t x, int32_t y) {
+  for (int i = 0; i < r->tet_count; i++)
+    if (laves__layer_corner(layer, r->tet[i], x) >= 0 && laves__layer_corner(layer, r->tet[i], y) >= 0) return true;
+  return false;
+}
+
+/* The link condition; see the top of the file. */
+static bool keeps_topology(const laves__layer *layer, int32_t a, int32_t b, const ring *r) {
+  int32_t of_a[4 * NEIGHBOURS_MAX], of_b[4 * NEIGHBOURS_MAX];
+  const int a_count = collect_neighbours(layer, a, of_a), b_count = collect_neighbours(layer, b, of_b);
+  if (a_count < 0 || b_count < 0) return false;
+  int common = 0;
+  for (int i = 0; i < b_count; i++) common += holds(of_a, a_count, of_b[i]);
+  if (common != r->vertex_count) return false;
+  for (int i = 0; i < r->vertex_count; i++)
+    for (int j = i + 1; j < r->vertex_count; j++) {
+      const int32_t x = r->vertex[i], y = r->vertex[j];
+      if (!ring_has_edge(layer, r, x, y) && star_has_triangle(layer, a, x, y) && star_has_triangle(layer, b, x, y)) return false;
+    }
+  if (layer->depth[b] != 0) return true;
+  if (layer->depth[a] != 0 || !is_boundary_edge(layer, b, a)) return false;
+  for (int i = 0; i < r->vertex_count; i++) {
+    const int32_t x = r->vertex[i];
+    if (is_boundary_edge(layer, a, x) && is_boundary_edge(layer, b, x) && !is_boundary_triangle(layer, r, a, b, x)) return false;
+  }
+  return true;
+}
+
+/* Merges b into a; everything changed is in the journal first. */
+static bool merge(laves__layer *layer, int32_t a, int32_t b, const ring *r, laves__journal *j) {
+  if (!laves__journal_star(j, layer, a) || !laves__journal_star(j, layer, b)) return false;
+  for (int i = 0; i < r->vertex_count; i++)
+    if (laves__layer_moves(layer, r->vertex[i]) && !laves__journal_star(j, layer, r->vertex[i])) return false;
+  for (int i = 0; i < r->tet_count; i++) {
+    const int32_t t = r->tet[i];
+    if (!laves__journal_tet(j, layer, t)) return false;
+    for (int k = 0; k < 4; k++)
+      if (laves__layer_moves(layer, layer->tet[t][k])) laves__star_remove(&layer->star[layer->tet[t][k]], t);
+    layer->tet[t][0] = -1;
+  }
+  laves__star *star = &layer->star[b];
+  for (int i = 0; i < star->count; i++) {
+    const int32_t t = star->tet[i];
+    if (!laves__journal_tet(j, layer, t) || !laves__star_add(layer->context, &layer->star[a], t)) return false;
+    layer->tet[t][laves__layer_corner(layer, t, b)] = a;
+  }
+  star->count = 0;
+  return true;
+}
+
+/* Qualities around a; false when one is not positive. */
+static bool measure_star(const laves__measure *m, laves__layer *layer, int32_t a) {
+  const laves__star *star = &layer->star[a];
+  for (int i = 0; i < star->count; i++) {
+    layer->quality[star->tet[i]] = laves__layer_quality(m, layer, star->tet[i]);
+    if (!(layer->quality[star->tet[i]] > LAVES__FLAT)) return false;
+  }
+  return true;
+}
+
+/* Smooths a, then the other vertices of tets around it that are still bad, then a again. */
+static void smooth_around(const laves__frame *frame, const laves__measure *m, double target, laves__layer *layer, int32_t a,
+                          laves__journal *j) {
+  laves__smooth_vertex(frame, m, target, layer, a, j);
+  for (int i = 0; i < layer->star[a].count; i++) {
+    const int32_t t = layer->star[a].tet[i];
+    for (int k = 0; k < 4 && layer->quality[t] < target; k++)
+      if (layer->tet[t][k] != a && laves__layer_moves(layer, layer->tet[t][k]))
+        laves__smooth_vertex(frame, m, target, layer, layer->tet[t][k], j);
+  }
+  laves__smooth_vertex(frame, m, target, layer, a, j);
+}
+
+static double worst_touched(const laves__layer *layer, const laves__journal *j) {
+  double worst = HUGE_VAL;
+  for (size_t i = 0; i < j->tet_count; i++) {
+    const int32_t t = j->tet[i].tet;
+    if (layer->tet[t][0] >= 0 && layer->quality[t] < worst) worst = layer->quality[t];
+  }
+  return worst;
+}
+
+static bool is_near_surface(const laves__frame *frame, laves__vec3 p, laves__vec3 face_normal, uint32_t hint) {
+  laves__vec3 foot, normal;
+  return laves__frame_project(frame, p, 4 * deviation_max, &hint, &foot, &normal) && v3_distance(p, foot) <= deviation_max &&
+         v3_dot(face_normal, normal) >= alignment_min;
+}
+
+/* Whether the boundary faces around a lie near the surface and along it. */
+static bool fits_surface(const laves__frame *frame, const laves__layer *layer, int32_t a) {
+  const laves__star *star = &layer->star[a];
+  for (int i = 0; i < star->count; i++) {
+    const int32_t t = star->tet[i];
+    for (int k = 0; k < 4; k++) {
+      if (layer->tet[t][k] == a || !laves__layer_is_boundary_face(layer, t, k)) continue;
+      laves__vec3 p[3];
+      for (int v = 0; v < 3; v++) p[v] = layer->position[layer->tet[t][laves__tet_face[k][v]]];
+      const laves__vec3 normal = v3_unit(v3_cross(v3_sub(p[1], p[0]), v3_sub(p[2], p[0])));
+      const laves__vec3 centroid = v3_scale(v3_add(v3_add(p[0], p[1]), p[2]), 1.0 / 3);
+      if (!is_near_surface(frame, centroid, normal, layer->hint[a])) return false;
+      for (int v = 0; v < 3; v++)
+        if (!is_near_surface(frame, v3_lerp(p[v], p[(v + 1) % 3], 0.5), normal, layer->hint[a])) return false;
+    }
+  }
+  return true;
+}
+
+static bool contract(const laves__frame *frame, const laves__measure *m, double target, laves__layer *layer, int32_t a, int32_t b,
+                     laves__journal *j) {
+  if (!laves__layer_moves(layer, a) || !laves__layer_moves(layer, b)) return false;
+  if (layer->depth[b] == 0 && layer->depth[a] != 0) return false;
+  ring r;
+  if (!find_ring(layer, a, b, &r) || !keeps_topology(layer, a, b, &r)) return false;
+  const double before = fmin(laves__star_quality(layer, a), laves__star_quality(layer, b));
+  laves__journal_clear(j);
+  bool good = merge(layer, a, b, &r, j) && layer->star[a].count > 0 && measure_star(m, layer, a);
+  if (good) {
+    smooth_around(frame, m, target, layer, a, j);
+    good = worst_touched(layer, j) > before && (layer->depth[a] != 0 || fits_surface(frame, layer, a));
+  }
+  if (!good) laves__journal_undo(j, layer);
+  laves__journal_clear(j);
+  return good;
+}
+
+bool laves__contract_tet(const laves__frame *frame, const laves__measure *m, double target, laves__layer *layer, int32_t tet,
+                         laves__journal *journal) {
+  int order[6];
+  double length[6];
+  for (int e = 0; e < 6; e++) {
+    const int32_t *corner = layer->tet[tet];
+    length[e] = v3_norm2(v3_sub(layer->position[corner[laves__tet_edge[e][0]]], layer->position[corner[laves__tet_edge[e][1]]]));
+    int at = e;
+    for (; at > 0 && length[order[at - 1]] > length[e]; at--) order[at] = order[at - 1];
+    order[at] = e;
+  }
+  for (int e = 0; e < 6; e++)
+    for (int direction = 0; direction < 2; direction++) {
+      const int32_t a = layer->tet[tet][laves__tet_edge[order[e]][direction]];
+      const int32_t b = layer->tet[tet][laves__tet_edge[order[e]][1 - direction]];
+      if (contract(frame, m, target, layer, a, b, journal)) return true;
+    }
+  return false;
+}

@@ -1,0 +1,181 @@
+/* The schedule of improvement.
+ *
+ * After a quick Laplace start, passes over the tets below the target. Space is cut in blocks, coloured by the parity of
+ * their coordinates; the bad tets of one block are worked on in turn, worst first, and all blocks of a colour at the same
+ * time. What an operation reads and changes lies within about six sizes of its tet, and blocks of one colour are fifteen
+ * apart, so they can't meet: the result is the same for any number of threads.
+ *
+ * First passes only smooth; when that no longer helps, contraction joins in. */
+#include <stdlib.h>
+
+#include "improve/contract.h"
+#include "improve/relax.h"
+#include "improve/smooth.h"
+
+enum { SWEEPS = 2, SMOOTH_PASSES = 5, CONTRACT_PASSES = 5 };
+static const double block_side = 15;    /* sizes; see above */
+static const double worthwhile = 0.02;  /* share of bad tets that a pass must cure to be followed by its like */
+static const double settle_floor = 0.2; /* quality that bringing a vertex back to the surface may cost: about 18 degrees */
+
+laves__measure laves__measure_of(const laves__window *w) {
+  static const double radians = 3.14159265358979323846 / 180;
+  return (laves__measure){.low_scale = 1 / (1 - cos(w->min_dihedral * radians)),
+                          .high_scale = 1 / (1 + cos(w->max_dihedral * radians)),
+                          .length_scale = w->volume_length > 0 ? 1 / w->volume_length : 1e30};
+}
+
+/* A bad tet and the block of space in which it is worked on. */
+typedef struct patient {
+  int32_t colour, block[3];
+  int32_t tet;
+  double quality;
+} patient;
+
+typedef struct work {
+  const laves__frame *frame;
+  laves__measure measure;
+  double target;
+  laves__layer *layer;
+  laves__journal *journal; /* one for each worker */
+  patient *item;           /* by colour, then block, then quality */
+  size_t count, capacity;
+  size_t *block; /* first item of each block, and the end */
+  size_t block_count, block_capacity;
+  bool contract;
+} work;
+
+static void measure_all(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const work *w = user;
+  for (size_t t = begin; t < end; t++)
+    if (w->layer->tet[t][0] >= 0) w->layer->quality[t] = laves__layer_quality(&w->measure, w->layer, (int32_t)t);
+}
+
+static bool is_bad(const work *w, int32_t t) { return w->layer->tet[t][0] >= 0 && w->layer->quality[t] < w->target; }
+
+static patient admit(const laves__layer *layer, int32_t tet) {
+  laves__vec3 p[4];
+  laves__layer_points(layer, tet, p);
+  const laves__vec3 c = v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25 / block_side);
+  patient item = {
+      .block = {(int32_t)floor(c.x), (int32_t)floor(c.y), (int32_t)floor(c.z)}, .tet = tet, .quality = layer->quality[tet]};
+  item.colour = (item.block[0] & 1) + 2 * (item.block[1] & 1) + 4 * (item.block[2] & 1);
+  return item;
+}
+
+static bool same_block(const patient *a, const patient *b) {
+  return a->block[0] == b->block[0] && a->block[1] == b->block[1] && a->block[2] == b->block[2];
+}
+
+static int by_colour_block_quality(const void *left, const void *right) {
+  const patient *a = left, *b = right;
+  if (a->colour != b->colour) return a->colour < b->colour ? -1 : 1;
+  for (int axis = 2; axis >= 0; axis--)
+    if (a->block[axis] != b->block[axis]) return a->block[axis] < b->block[axis] ? -1 : 1;
+  if (a->quality != b->quality) return a->quality < b->quality ? -1 : 1;
+  return a->tet < b->tet ? -1 : a->tet > b->tet;
+}
+
+/* The bad tets of the layer, in order, and where their blocks begin; false when memory is short. */
+static bool admit_all(work *w) {
+  w->count = w->block_count = 0;
+  for (size_t t = 0; t < w->layer->tet_count; t++) {
+    if (!is_bad(w, (int32_t)t)) continue;
+    if (!laves__grow(w->layer->context, &w->item, &w->capacity, w->count + 1, sizeof *w->item)) return false;
+    w->item[w->count++] = admit(w->layer, (int32_t)t);
+  }
+  if (w->count) qsort(w->item, w->count, sizeof *w->item, by_colour_block_quality);
+  for (size_t i = 0; i <= w->count; i++) {
+    if (i > 0 && i < w->count && same_block(&w->item[i - 1], &w->item[i])) continue;
+    if (!laves__grow(w->layer->context, &w->block, &w->block_capacity, w->block_count + 1, sizeof *w->block)) return false;
+    w->block[w->block_count++] = i;
+  }
+  w->block_count--;
+  return true;
+}
+
+static void mend(work *w, int32_t t, laves__journal *journal) {
+  for (int k = 0; k < 4 && is_bad(w, t); k++)
+    if (laves__layer_moves(w->layer, w->layer->tet[t][k]))
+      laves__smooth_vertex(w->frame, &w->measure, w->target, w->layer, w->layer->tet[t][k], NULL);
+  if (w->contract && is_bad(w, t)) laves__contract_tet(w->frame, &w->measure, w->target, w->layer, t, journal);
+}
+
+typedef struct colour_range {
+  work *w;
+  size_t first_block;
+} colour_range;
+
+/* Shared: the layer. Blocks of one colour read and write parts of it that are too far apart to meet. */
+static void mend_blocks(void *user, size_t begin, size_t end, int worker) {
+  const colour_range *range = user;
+  work *w = range->w;
+  for (size_t b = range->first_block + begin; b < range->first_block + end; b++)
+    for (size_t i = w->block[b]; i < w->block[b + 1]; i++) {
+      if (laves__is_cancelled(w->layer->context)) return;
+      if (is_bad(w, w->item[i].tet)) mend(w, w->item[i].tet, &w->journal[worker]);
+    }
+}
+
+/* One pass over the bad tets; how many there were goes to *before. */
+static laves_result run_pass(work *w, size_t *before, laves_error *error) {
+  if (!admit_all(w)) return laves__fail_memory(w->layer->context, error);
+  *before = w->count;
+  for (size_t first = 0; first < w->block_count;) {
+    size_t end = first + 1;
+    while (end < w->block_count && w->item[w->block[end]].colour == w->item[w->block[first]].colour) end++;
+    colour_range range = {w, first};
+    if (!laves__parallel_for(w->layer->context, "improve", end - first, 1, mend_blocks, &range))
+      return laves__fail_cancelled(error);
+    first = end;
+  }
+  return LAVES_OK;
+}
+
+/* Passes of one kind until one of them cures too little. */
+static laves_result run_passes(work *w, int passes, laves_error *error) {
+  size_t last = SIZE_MAX;
+  for (int pass = 0; pass < passes; pass++) {
+    size_t before = 0;
+    const laves_result result = run_pass(w, &before, error);
+    if (result != LAVES_OK || before == 0) return result;
+    if ((double)before > (1 - worthwhile) * (double)last) break;
+    last = before;
+  }
+  return LAVES_OK;
+}
+
+static void settle_all(work *w) {
+  for (size_t v = 0; v < w->layer->vertex_count; v++)
+    if (w->layer->off_surface[v] && w->layer->star[v].count > 0)
+      laves__settle_vertex(w->frame, &w->measure, settle_floor, w->layer, (int32_t)v);
+}
+
+laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {
+  laves_context *context = layer->context;
+  work w = {.frame = frame, .measure = laves__measure_of(window), .target = 1, .layer = layer};
+  const int workers = laves__workers(context);
+  laves_result result = LAVES_OK;
+  w.journal = laves__alloc_zeroed(context, (size_t)workers, sizeof *w.journal);
+  if (!w.journal) return laves__fail_memory(context, error);
+  for (int i = 0; i < workers; i++) w.journal[i].context = context;
+  if (!laves__parallel_for(context, "improve", layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
+  if (result == LAVES_OK) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
+  if (result == LAVES_OK) result = run_passes(&w, SMOOTH_PASSES, error);
+  if (result == LAVES_OK) settle_all(&w);
+  w.contract = true;
+  if (result == LAVES_OK) result = run_passes(&w, CONTRACT_PASSES, error);
+  if (result == LAVES_OK) settle_all(&w);
+  for (int i = 0; i < workers; i++) laves__journal_free(&w.journal[i]);
+  laves__free(context, w.journal, (size_t)workers, sizeof *w.journal);
+  laves__free(context, w.item, w.capacity, sizeof *w.item);
+  laves__free(context, w.block, w.block_capacity, sizeof *w.block);
+  return result;
+}
+
+size_t laves__improve_outside(const laves__window *window, const laves__layer *layer) {
+  const laves__measure m = laves__measure_of(window);
+  size_t count = 0;
+  for (size_t t = 0; t < layer->tet_count; t++) count += layer->tet[t][0] >= 0 && laves__layer_quality(&m, layer, (int32_t)t) < 1;
+  return count;
+}

@@ -1,0 +1,34 @@
+/* Stage "improve": raises the worst elements of the boundary layer.
+ *
+ *     improve.c    the schedule: which tets are worked on, in which order, in which blocks of space
+ *     measure.h    the quality that is raised: dihedral window and volume-length in one number
+ *     relax.c      a quick Laplace start for surface vertices
+ *     smooth.c     one vertex: max-min ascent by a proximal bundle step, on the surface for surface vertices
+ *     contract.c   one edge: contraction, with everything undone when the worst does not rise
+ *     journal.h    what was changed, so that it can be undone
+ *
+ * Source: the project's own measurements; max-min smoothing after [freitag1997], contraction after [klingner2007]. */
+#ifndef LAVES_IMPROVE_IMPROVE_H
+#define LAVES_IMPROVE_IMPROVE_H
+
+#include "domain/frame.h"
+#include "mesh/layer.h"
+#include "mesh/mesh.h"
+
+/* What is asked of every tetrahedron. */
+typedef struct laves__window {
+  double min_dihedral, max_dihedral; /* degrees */
+  double volume_length;              /* 0: not asked */
+} laves__window;
+
+/* Improves the layer until every tet is inside the window, or no operation helps.
+ * Promise: the worst quality never falls; vertices on the surface stay on it; vertices deeper than LAVES__DEPTH_MOVES stay
+ * where they are; tets stay positive (by an exact test); the boundary stays a manifold of the same topology.
+ * The result does not depend on the number of threads.
+ * LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
+laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error);
+
+/* How many tets of the layer are outside a window. */
+size_t laves__improve_outside(const laves__window *window, const laves__layer *layer);
+
+#endif

@@ -1,0 +1,69 @@
+/* The quality that improvement raises: one number for a tetrahedron, 1 on the border of the asked window.
+ *
+ *     q = min over the six dihedral angles t of  (1 - cos t) / (1 - cos lo),  (1 + cos t) / (1 + cos hi)
+ *     and VL / vt,  VL = sqrt(2) 6V / l_rms^3  the volume-length ratio (1 for the regular tetrahedron)
+ *
+ * q >= 1 means inside the window. Flat and inverted tets get their volume (at most FLAT), so that untangling is part of
+ * the same ascent. Angles come from the four face normals N_i (outwards, opposite corner i): cos t_ij = -n_i . n_j. */
+#ifndef LAVES_IMPROVE_MEASURE_H
+#define LAVES_IMPROVE_MEASURE_H
+
+#include "improve/improve.h"
+
+/* Six times the volume, in cubes of the size, below which a tet counts as flat; a regular one has 0.71. */
+#define LAVES__FLAT 1e-4
+#define LAVES__SQRT2 1.4142135623730951
+
+typedef struct laves__measure {
+  double low_scale;    /* 1 / (1 - cos lo) */
+  double high_scale;   /* 1 / (1 + cos hi) */
+  double length_scale; /* 1 / vt, or a large number when not asked */
+} laves__measure;
+
+laves__measure laves__measure_of(const laves__window *window);
+
+/* The pairs of faces, in the order of laves__tet_edge. */
+static const uint8_t laves__face_pair[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
+static inline void laves__face_normals(const laves__vec3 p[4], laves__vec3 n[4]) {
+  const laves__vec3 ab = v3_sub(p[1], p[0]), ac = v3_sub(p[2], p[0]), ad = v3_sub(p[3], p[0]);
+  n[1] = v3_cross(ad, ac);
+  n[2] = v3_cross(ab, ad);
+  n[3] = v3_cross(ac, ab);
+  n[0] = v3_scale(v3_add(v3_add(n[1], n[2]), n[3]), -1);
+}
+
+static inline double laves__edge_sum(const laves__vec3 p[4]) {
+  return v3_norm2(v3_sub(p[1], p[0])) + v3_norm2(v3_sub(p[2], p[0])) + v3_norm2(v3_sub(p[3], p[0])) +
+         v3_norm2(v3_sub(p[2], p[1])) + v3_norm2(v3_sub(p[3], p[1])) + v3_norm2(v3_sub(p[3], p[2]));
+}
+
+static inline double laves__quality(const laves__measure *m, const laves__vec3 p[4]) {
+  laves__vec3 n[4];
+  laves__face_normals(p, n);
+  const double volume6 = -v3_dot(n[3], v3_sub(p[3], p[0]));
+  if (!(volume6 > LAVES__FLAT)) return volume6;
+  double per_length[4];
+  for (int i = 0; i < 4; i++) per_length[i] = 1 / sqrt(v3_norm2(n[i]));
+  double least = 1, most = -1; /* of n_i . n_j */
+  for (int e = 0; e < 6; e++) {
+    const int i = laves__face_pair[e][0], j = laves__face_pair[e][1];
+    const double d = v3_dot(n[i], n[j]) * per_length[i] * per_length[j];
+    if (d < least) least = d;
+    if (d > most) most = d;
+  }
+  const double mean = laves__edge_sum(p) / 6;
+  double q = (1 + least) * m->low_scale;
+  const double high = (1 - most) * m->high_scale, length = LAVES__SQRT2 * volume6 / (mean * sqrt(mean)) * m->length_scale;
+  if (high < q) q = high;
+  if (length < q) q = length;
+  return q > LAVES__FLAT ? q : LAVES__FLAT;
+}
+
+static inline double laves__layer_quality(const laves__measure *m, const laves__layer *layer, int32_t tet) {
+  laves__vec3 p[4];
+  laves__layer_points(layer, tet, p);
+  return laves__quality(m, p);
+}
+
+#endif

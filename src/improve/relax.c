@@ -1,0 +1,117 @@
+/* Laplace sweeps on the surface: each surface vertex goes most of the way to the mean of its surface neighbours, counted
+ * once for each tet that they share with it, and back on to the surface.  All vertices at once, into a second array, so
+ * that the order does not matter; it evens out the surface and spares a quarter of the later work. */
+#include "improve/relax.h"
+
+#include "base/predicates.h"
+
+static const double share = 0.7;          /* of the way to the mean */
+static const double surface_reach = 0.75; /* sizes */
+
+typedef struct place {
+  laves__vec3 position, normal;
+  uint32_t hint;
+  bool moved;
+} place;
+
+typedef struct sweep {
+  const laves__frame *frame;
+  const laves__measure *measure;
+  laves__layer *layer;
+  place *other; /* [vertex_count] the new places; after the exchange the old ones */
+} sweep;
+
+static void find_places(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const sweep *s = user;
+  const laves__layer *layer = s->layer;
+  for (size_t v = begin; v < end; v++) {
+    place *p = &s->other[v];
+    p->moved = false;
+    if (layer->depth[v] != 0 || layer->off_surface[v]) continue;
+    const laves__star *star = &layer->star[v];
+    laves__vec3 sum = {0, 0, 0};
+    int count = 0;
+    for (int i = 0; i < star->count; i++)
+      for (int k = 0; k < 4; k++) {
+        const int32_t w = layer->tet[star->tet[i]][k];
+        if (w == (int32_t)v || layer->depth[w] != 0) continue;
+        sum = v3_add(sum, layer->position[w]);
+        count++;
+      }
+    if (count == 0) continue;
+    const laves__vec3 aim = v3_lerp(layer->position[v], v3_scale(sum, 1.0 / count), share);
+    p->hint = layer->hint[v];
+    p->moved = laves__frame_project(s->frame, aim, surface_reach, &p->hint, &p->position, &p->normal) &&
+               v3_distance(p->position, aim) <= surface_reach;
+  }
+}
+
+static void exchange(laves__layer *layer, place *p, size_t v) {
+  const place old = {layer->position[v], layer->normal[v], layer->hint[v], p->moved};
+  layer->position[v] = p->position;
+  layer->normal[v] = p->normal;
+  layer->hint[v] = p->hint;
+  *p = old;
+}
+
+static void measure_tets(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const sweep *s = user;
+  for (size_t t = begin; t < end; t++) {
+    bool touched = false;
+    for (int k = 0; k < 4; k++) touched |= s->other[s->layer->tet[t][k]].moved;
+    if (touched) s->layer->quality[t] = laves__layer_quality(s->measure, s->layer, (int32_t)t);
+  }
+}
+
+static bool is_worse(const laves__layer *layer, int32_t t, double worst) {
+  if (layer->quality[t] < worst) return true;
+  if (layer->quality[t] > LAVES__FLAT) return false;
+  laves__vec3 p[4];
+  laves__layer_points(layer, t, p);
+  return laves__orient3d(p[0], p[1], p[2], p[3]) <= 0;
+}
+
+/* Sends the vertices of tets that became worse than `worst` back, until none is; each goes back at most once. */
+static void take_back(sweep *s, double worst) {
+  laves__layer *layer = s->layer;
+  for (bool again = true; again;) {
+    again = false;
+    for (size_t t = 0; t < layer->tet_count; t++) {
+      if (!is_worse(layer, (int32_t)t, worst)) continue;
+      for (int k = 0; k < 4; k++) {
+        const int32_t v = layer->tet[t][k];
+        if (!s->other[v].moved) continue;
+        exchange(layer, &s->other[v], (size_t)v);
+        s->other[v].moved = false;
+        again = true;
+        for (int i = 0; i < layer->star[v].count; i++) {
+          const int32_t around = layer->star[v].tet[i];
+          layer->quality[around] = laves__layer_quality(s->measure, layer, around);
+        }
+      }
+    }
+  }
+}
+
+laves_result laves__relax_surface(const laves__frame *frame, const laves__measure *measure, int sweeps, laves__layer *layer,
+                                  laves_error *error) {
+  laves_context *context = layer->context;
+  sweep s = {frame, measure, layer, laves__alloc(context, layer->vertex_count, sizeof *s.other)};
+  if (!s.other) return laves__fail_memory(context, error);
+  double worst = HUGE_VAL;
+  for (size_t t = 0; t < layer->tet_count; t++)
+    if (layer->quality[t] < worst) worst = layer->quality[t];
+  bool done = true;
+  for (int i = 0; done && i < sweeps; i++) {
+    done = laves__parallel_for(context, "improve", layer->vertex_count, 256, find_places, &s);
+    if (!done) break;
+    for (size_t v = 0; v < layer->vertex_count; v++)
+      if (s.other[v].moved) exchange(layer, &s.other[v], v);
+    done = laves__parallel_for(context, "improve", layer->tet_count, 256, measure_tets, &s);
+    if (done) take_back(&s, worst);
+  }
+  laves__free(context, s.other, layer->vertex_count, sizeof *s.other);
+  return done ? LAVES_OK : laves__fail_cancelled(error);
+}

@@ -1,0 +1,224 @@
+/* Max-min smoothing of one vertex by a proximal bundle step.
+ *
+ * The worst quality around a vertex is a minimum of smooth functions f_k of its place: two for each dihedral angle, one
+ * volume-length ratio for each tet. Near the minimum several are nearly equal, and following the gradient of one lowers
+ * another; so the step d maximises the minimum of all their linear models, with a penalty for length:
+ *
+ *     max over d of   min_k (f_k + g_k . d)  -  |d|^2 / (2 tau)
+ *
+ * whose dual is a small quadratic programme over the simplex, d = tau sum_k lambda_k g_k, solved by moving weight between
+ * two functions at a time. The step is taken only when the worst truly rises by a tenth of what the model foretells; tau
+ * grows when the model is good and shrinks when it is not. For a surface vertex gradients lose their normal part and the
+ * trial point is projected before it is measured.
+ *
+ * Gradient of n_k . n_l, for unit normals of two faces: each face that holds the vertex adds
+ * e x (n_other - (n_k . n_l) n_own) / |N_own|, where e runs along the edge opposite the vertex in that face. */
+#include "improve/smooth.h"
+
+#include "base/predicates.h"
+
+enum {
+  TERMS_MAX = 640,    /* functions in a bundle; more are left out (a star of 50 tets has 650, and few are active) */
+  STEPS_MAX = 10,     /* accepted steps for one call */
+  TRIES_MAX = 6,      /* shrinks of tau for one step */
+  EXCHANGES_MAX = 60, /* of weight, for one dual problem */
+};
+static const double active_range = 0.6;   /* functions this far above the least take part */
+static const double first_tau = 0.05;     /* size^2; typical steps are a tenth of the size */
+static const double longest_step = 0.5;   /* sizes */
+static const double surface_reach = 0.75; /* sizes: how far a trial point may be from the surface */
+static const double least_gain = 0.003;   /* foretold gains below this are not worth a trial */
+static const double accept_share = 0.1, good_share = 0.5, exact_enough = 0.02;
+
+typedef struct bundle {
+  int count;
+  double value[TERMS_MAX], model[TERMS_MAX], weight[TERMS_MAX];
+  laves__vec3 gradient[TERMS_MAX];
+} bundle;
+
+static void add_term(bundle *b, double value, laves__vec3 gradient) {
+  if (b->count == TERMS_MAX) return;
+  b->value[b->count] = value;
+  b->gradient[b->count++] = gradient;
+}
+
+/* The gradient, with respect to corner c, of the dot product d of unit normals i and j. */
+static laves__vec3 dot_gradient(const laves__vec3 p[4], int c, const laves__vec3 unit[4], const double per_length[4], int i,
+                                int j, double d) {
+  laves__vec3 g = {0, 0, 0};
+  for (int side = 0; side < 2; side++) {
+    const int own = side ? j : i, other = side ? i : j;
+    if (own == c) continue; /* the face opposite the vertex does not move */
+    const uint8_t *face = laves__tet_face[own];
+    const int at = face[0] == c ? 0 : face[1] == c ? 1 : 2;
+    const laves__vec3 e = v3_sub(p[face[(at + 1) % 3]], p[face[(at + 2) % 3]]);
+    g = v3_add(g, v3_cross(e, v3_scale(v3_mad(unit[other], unit[own], -d), per_length[own])));
+  }
+  return g;
+}
+
+/* Adds the functions of one tet that lie below `ceiling`. */
+static void add_tet(bundle *b, const laves__measure *m, const laves__vec3 p[4], int c, double ceiling) {
+  laves__vec3 n[4], unit[4];
+  double per_length[4];
+  laves__face_normals(p, n);
+  const double volume6 = -v3_dot(n[3], v3_sub(p[3], p[0]));
+  if (!(volume6 > LAVES__FLAT)) {
+    add_term(b, volume6, v3_scale(n[c], -1));
+    return;
+  }
+  for (int i = 0; i < 4; i++) {
+    per_length[i] = 1 / sqrt(v3_norm2(n[i]));
+    unit[i] = v3_scale(n[i], per_length[i]);
+  }
+  for (int e = 0; e < 6; e++) {
+    const int i = laves__face_pair[e][0], j = laves__face_pair[e][1];
+    const double d = v3_dot(unit[i], unit[j]);
+    const double low = (1 + d) * m->low_scale, high = (1 - d) * m->high_scale;
+    if (low >= ceiling && high >= ceiling) continue;
+    const laves__vec3 g = dot_gradient(p, c, unit, per_length, i, j, d);
+    if (low < ceiling) add_term(b, low, v3_scale(g, m->low_scale));
+    if (high < ceiling) add_term(b, high, v3_scale(g, -m->high_scale));
+  }
+  const double mean = laves__edge_sum(p) / 6, cube = mean * sqrt(mean);
+  const double scale = LAVES__SQRT2 * m->length_scale / cube, length = scale * volume6;
+  if (length >= ceiling) return;
+  laves__vec3 spread = {0, 0, 0}; /* half the gradient of the sum of squared edges */
+  for (int k = 0; k < 4; k++) spread = v3_add(spread, v3_sub(p[c], p[k]));
+  add_term(b, length, v3_add(v3_scale(n[c], -scale), v3_scale(spread, -length / (2 * mean))));
+}
+
+static void fill_bundle(bundle *b, const laves__measure *m, const laves__layer *layer, int32_t vertex, double least) {
+  const laves__star *star = &layer->star[vertex];
+  b->count = 0;
+  for (int i = 0; i < star->count; i++) {
+    laves__vec3 p[4];
+    laves__layer_points(layer, star->tet[i], p);
+    add_tet(b, m, p, laves__layer_corner(layer, star->tet[i], vertex), least + active_range);
+  }
+  if (layer->depth[vertex] != 0) return;
+  const laves__vec3 n = layer->normal[vertex];
+  for (int k = 0; k < b->count; k++) b->gradient[k] = v3_mad(b->gradient[k], n, -v3_dot(b->gradient[k], n));
+}
+
+/* Solves the dual for one tau; returns the step and the gain that the model foretells. */
+static laves__vec3 solve_bundle(bundle *b, double tau, double *gain) {
+  int best = 0;
+  for (int k = 0; k < b->count; k++) {
+    b->weight[k] = 0;
+    if (b->value[k] < b->value[best]) best = k;
+  }
+  const double least = b->value[best];
+  b->weight[best] = 1;
+  laves__vec3 sum = b->gradient[best];
+  for (int exchange = 0;; exchange++) {
+    int low = 0, high = -1;
+    for (int k = 0; k < b->count; k++) {
+      b->model[k] = b->value[k] + tau * v3_dot(b->gradient[k], sum);
+      if (b->model[k] < b->model[low]) low = k;
+      if (b->weight[k] > 0 && (high < 0 || b->model[k] > b->model[high])) high = k;
+    }
+    *gain = b->model[low] - least;
+    const double difference = b->model[high] - b->model[low];
+    if (difference <= exact_enough * fabs(*gain) || exchange == EXCHANGES_MAX) break;
+    const laves__vec3 across = v3_sub(b->gradient[low], b->gradient[high]);
+    const double curvature = tau * v3_norm2(across);
+    double move = b->weight[high];
+    if (curvature * move > difference) move = difference / curvature;
+    b->weight[high] -= move;
+    b->weight[low] += move;
+    sum = v3_mad(sum, across, move);
+  }
+  laves__vec3 step = v3_scale(sum, tau);
+  const double length = v3_norm(step);
+  if (length > longest_step) step = v3_scale(step, longest_step / length);
+  return step;
+}
+
+double laves__star_quality(const laves__layer *layer, int32_t vertex) {
+  const laves__star *star = &layer->star[vertex];
+  double worst = HUGE_VAL;
+  for (int i = 0; i < star->count; i++)
+    if (layer->quality[star->tet[i]] < worst) worst = layer->quality[star->tet[i]];
+  return worst;
+}
+
+/* Puts the vertex at `place` and measures its star; false, with everything as it was, when a tet is not above `limit` or
+ * not positive. */
+static bool try_place(const laves__measure *m, laves__layer *layer, int32_t vertex, laves__vec3 place, double limit,
+                      laves__journal *journal) {
+  enum { STAR_MAX = 128 };
+  double quality[STAR_MAX];
+  const laves__star *star = &layer->star[vertex];
+  if (star->count > STAR_MAX) return false;
+  const laves__vec3 old = layer->position[vertex];
+  layer->position[vertex] = place;
+  bool good = true;
+  for (int i = 0; good && i < star->count; i++) {
+    laves__vec3 p[4];
+    laves__layer_points(layer, star->tet[i], p);
+    quality[i] = laves__quality(m, p);
+    /* A volume well above rounding is positive without an exact test; coordinates are some thousands at most. */
+    good = quality[i] > limit && (quality[i] > LAVES__FLAT || laves__orient3d(p[0], p[1], p[2], p[3]) > 0);
+  }
+  layer->position[vertex] = old;
+  if (!good || !laves__journal_vertex(journal, layer, vertex)) return false;
+  for (int i = 0; i < star->count; i++)
+    if (!laves__journal_tet(journal, layer, star->tet[i])) return false;
+  layer->position[vertex] = place;
+  for (int i = 0; i < star->count; i++) layer->quality[star->tet[i]] = quality[i];
+  return true;
+}
+
+bool laves__smooth_vertex(const laves__frame *frame, const laves__measure *m, double target, laves__layer *layer, int32_t vertex,
+                          laves__journal *journal) {
+  const bool on_surface = layer->depth[vertex] == 0;
+  double tau = first_tau;
+  bool moved = false;
+  bundle b;
+  for (int step = 0; step < STEPS_MAX; step++) {
+    const double least = laves__star_quality(layer, vertex);
+    if (least >= target) break;
+    fill_bundle(&b, m, layer, vertex, least);
+    if (b.count == 0) break;
+    bool accepted = false;
+    for (int attempt = 0; attempt < TRIES_MAX && !accepted; attempt++) {
+      double gain;
+      laves__vec3 place = v3_add(layer->position[vertex], solve_bundle(&b, tau, &gain)), normal = {0, 0, 0};
+      if (gain < least_gain) return moved;
+      uint32_t hint = layer->hint[vertex];
+      bool there = true;
+      if (on_surface) {
+        laves__vec3 foot;
+        there =
+            laves__frame_project(frame, place, surface_reach, &hint, &foot, &normal) && v3_distance(foot, place) <= surface_reach;
+        place = foot;
+      }
+      if (there && try_place(m, layer, vertex, place, least + accept_share * gain, journal)) {
+        accepted = moved = true;
+        if (on_surface) {
+          layer->normal[vertex] = normal;
+          layer->hint[vertex] = hint;
+          layer->off_surface[vertex] = false;
+        }
+        if (laves__star_quality(layer, vertex) - least > good_share * gain) tau *= 2;
+      } else {
+        tau *= 0.3;
+      }
+    }
+    if (!accepted) break;
+  }
+  return moved;
+}
+
+bool laves__settle_vertex(const laves__frame *frame, const laves__measure *m, double floor, laves__layer *layer, int32_t vertex) {
+  uint32_t hint = layer->hint[vertex];
+  laves__vec3 foot, normal;
+  if (!laves__frame_project(frame, layer->position[vertex], 2 * surface_reach, &hint, &foot, &normal)) return false;
+  const double least = laves__star_quality(layer, vertex);
+  if (!try_place(m, layer, vertex, foot, least < floor ? least : floor, NULL)) return false;
+  layer->normal[vertex] = normal;
+  layer->hint[vertex] = hint;
+  layer->off_surface[vertex] = false;
+  return true;
+}

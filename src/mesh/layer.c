@@ -1,0 +1,118 @@
+/* Arrays and stars of the boundary layer. */
+#include "mesh/layer.h"
+
+#include <string.h>
+
+/* Room in each star's slice beyond what it starts with: a contraction seldom adds more. */
+enum { STAR_SLACK = 4 };
+
+laves_result laves__layer_create(laves_context *context, size_t vertex_count, size_t tet_count, laves__layer *layer,
+                                 laves_error *error) {
+  memset(layer, 0, sizeof *layer);
+  layer->context = context;
+  layer->vertex_count = vertex_count;
+  layer->tet_count = tet_count;
+  layer->position = laves__alloc(context, vertex_count, sizeof *layer->position);
+  layer->normal = laves__alloc_zeroed(context, vertex_count, sizeof *layer->normal);
+  layer->hint = laves__alloc(context, vertex_count, sizeof *layer->hint);
+  layer->depth = laves__alloc(context, vertex_count, sizeof *layer->depth);
+  layer->off_surface = laves__alloc_zeroed(context, vertex_count, sizeof *layer->off_surface);
+  layer->origin = laves__alloc(context, vertex_count, sizeof *layer->origin);
+  layer->star = laves__alloc_zeroed(context, vertex_count, sizeof *layer->star);
+  layer->tet = laves__alloc(context, tet_count, sizeof *layer->tet);
+  layer->quality = laves__alloc(context, tet_count, sizeof *layer->quality);
+  if (layer->position && layer->normal && layer->hint && layer->depth && layer->off_surface && layer->origin && layer->star &&
+      layer->tet && layer->quality)
+    return LAVES_OK;
+  return laves__fail_memory(context, error);
+}
+
+laves_result laves__layer_link(laves__layer *layer, laves_error *error) {
+  for (size_t v = 0; v < layer->vertex_count; v++) layer->star[v] = (laves__star){0};
+  for (size_t t = 0; t < layer->tet_count; t++)
+    for (int k = 0; k < 4; k++) layer->star[layer->tet[t][k]].count++;
+  size_t total = 0;
+  for (size_t v = 0; v < layer->vertex_count; v++) {
+    laves__star *star = &layer->star[v];
+    star->capacity = layer->depth[v] <= LAVES__DEPTH_MOVES ? star->count + STAR_SLACK : 0;
+    total += (size_t)star->capacity;
+  }
+  layer->star_block = laves__alloc(layer->context, total, sizeof *layer->star_block);
+  if (!layer->star_block) return laves__fail_memory(layer->context, error);
+  layer->star_block_count = total;
+  size_t place = 0;
+  for (size_t v = 0; v < layer->vertex_count; v++) {
+    laves__star *star = &layer->star[v];
+    star->count = 0;
+    star->tet = star->capacity ? layer->star_block + place : NULL;
+    place += (size_t)star->capacity;
+  }
+  for (size_t t = 0; t < layer->tet_count; t++)
+    for (int k = 0; k < 4; k++) {
+      laves__star *star = &layer->star[layer->tet[t][k]];
+      if (star->capacity) star->tet[star->count++] = (int32_t)t;
+    }
+  return LAVES_OK;
+}
+
+void laves__layer_free(laves__layer *layer) {
+  laves_context *context = layer->context;
+  if (!context) return;
+  const size_t vertices = layer->vertex_count, tets = layer->tet_count;
+  for (size_t v = 0; layer->star && v < vertices; v++)
+    if (layer->star[v].own_block)
+      laves__free(context, layer->star[v].tet, (size_t)layer->star[v].capacity, sizeof *layer->star[v].tet);
+  laves__free(context, layer->position, vertices, sizeof *layer->position);
+  laves__free(context, layer->normal, vertices, sizeof *layer->normal);
+  laves__free(context, layer->hint, vertices, sizeof *layer->hint);
+  laves__free(context, layer->depth, vertices, sizeof *layer->depth);
+  laves__free(context, layer->off_surface, vertices, sizeof *layer->off_surface);
+  laves__free(context, layer->origin, vertices, sizeof *layer->origin);
+  laves__free(context, layer->star, vertices, sizeof *layer->star);
+  laves__free(context, layer->tet, tets, sizeof *layer->tet);
+  laves__free(context, layer->quality, tets, sizeof *layer->quality);
+  laves__free(context, layer->star_block, layer->star_block_count, sizeof *layer->star_block);
+  memset(layer, 0, sizeof *layer);
+}
+
+int32_t laves__layer_across(const laves__layer *layer, int32_t tet, int corner) {
+  int32_t face[3];
+  for (int k = 0, n = 0; k < 4; k++)
+    if (k != corner) face[n++] = layer->tet[tet][k];
+  int first = 0;
+  while (!laves__layer_moves(layer, face[first])) first++;
+  const int32_t b = face[(first + 1) % 3], c = face[(first + 2) % 3];
+  const laves__star *star = &layer->star[face[first]];
+  for (int i = 0; i < star->count; i++) {
+    const int32_t other = star->tet[i];
+    if (other != tet && laves__layer_corner(layer, other, b) >= 0 && laves__layer_corner(layer, other, c) >= 0) return other;
+  }
+  return -1;
+}
+
+bool laves__layer_is_boundary_face(const laves__layer *layer, int32_t tet, int corner) {
+  for (int k = 0; k < 4; k++)
+    if (k != corner && layer->depth[layer->tet[tet][k]] != 0) return false;
+  return laves__layer_across(layer, tet, corner) < 0;
+}
+
+bool laves__star_add(laves_context *context, laves__star *star, int32_t tet) {
+  if (star->count == star->capacity) {
+    const int32_t larger = 2 * star->capacity + STAR_SLACK;
+    int32_t *block = laves__alloc(context, (size_t)larger, sizeof *block);
+    if (!block) return false;
+    memcpy(block, star->tet, (size_t)star->count * sizeof *block);
+    if (star->own_block) laves__free(context, star->tet, (size_t)star->capacity, sizeof *star->tet);
+    *star = (laves__star){block, star->count, larger, true};
+  }
+  star->tet[star->count++] = tet;
+  return true;
+}
+
+void laves__star_remove(laves__star *star, int32_t tet) {
+  int32_t i = 0;
+  while (star->tet[i] != tet) i++;
+  LAVES_ASSERT(i < star->count);
+  star->count--;
+  for (; i < star->count; i++) star->tet[i] = star->tet[i + 1]; /* the order is kept, so that undoing is exact */
+}

@@ -1,0 +1,204 @@
+/* The story from domain to mesh, in one function: laves_generate().
+ *
+ *     domain -> background -> classify -> snap -> improve -> mesh
+ *
+ * Each stage is one call with one promise, told in its header; each is timed. All coordinates between classify and mesh are
+ * those of the frame: centred on the domain, turned as wished, in units of the size. */
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "assemble/assemble.h"
+#include "classify/classify.h"
+#include "improve/improve.h"
+#include "options.h"
+#include "snap/snap.h"
+
+/* What lives from stage to stage. */
+typedef struct run {
+  laves_context *context;
+  const laves_domain *domain;
+  const laves_options *options;
+  laves_report *report;
+  laves_error *error;
+  laves__frame frame;
+  laves__lattice lattice;
+  laves__layer layer;
+  laves__snap_counts counts;
+  double wall, cpu; /* at the start of the stage under way */
+} run;
+
+static void begin_stage(run *r) {
+  r->wall = laves__wall_seconds();
+  r->cpu = laves__cpu_seconds();
+}
+
+/* Adds the time since begin_stage() to the stage's line in the report. */
+static void end_stage(run *r, const char *name) {
+  laves_report *report = r->report;
+  int i = 0;
+  while (i < report->stage_count && strcmp(report->stages[i].name, name) != 0) i++;
+  if (i == LAVES_STAGE_CAPACITY) return;
+  if (i == report->stage_count) {
+    report->stages[i].name = name;
+    report->stages[i].wall_seconds = report->stages[i].cpu_seconds = 0;
+    report->stage_count++;
+  }
+  report->stages[i].wall_seconds += laves__wall_seconds() - r->wall;
+  report->stages[i].cpu_seconds += laves__cpu_seconds() - r->cpu;
+}
+
+static void warn(run *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void warn(run *r, const char *format, ...) {
+  laves_report *report = r->report;
+  if (report->warning_count == LAVES_WARNING_CAPACITY) return;
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(report->warnings[report->warning_count++], sizeof report->warnings[0], format, arguments);
+  va_end(arguments);
+}
+
+/* Where the lattice lies and how large it is. */
+static laves_result choose_frame(run *r) {
+  const laves__oracle *oracle = &r->domain->oracle;
+  begin_stage(r);
+  r->report->volume = laves__domain_volume(oracle);
+  r->frame.oracle = oracle;
+  r->frame.centre = box3_centre(oracle->bounds);
+  r->frame.rotation = laves__options_rotation(r->options, oracle);
+  r->frame.size = laves__options_size(r->options, oracle, r->report->volume);
+  end_stage(r, "background");
+  if (r->frame.size > 0 && isfinite(r->frame.size)) return LAVES_OK;
+  return laves__fail(r->error, LAVES_ERROR_INPUT, "no inside was found: the volume of the solid is %g", r->report->volume);
+}
+
+static laves_result make_background(run *r) {
+  begin_stage(r);
+  laves__lattice_free(&r->lattice);
+  const laves_result result = laves__lattice_create(r->context, laves__frame_bounds(&r->frame), &r->lattice, r->error);
+  end_stage(r, "background");
+  return result;
+}
+
+static laves_result classify(run *r) {
+  begin_stage(r);
+  const laves_result result = laves__classify(&r->frame, &r->lattice, r->error);
+  end_stage(r, "classify");
+  return result;
+}
+
+static laves_result snap(run *r) {
+  begin_stage(r);
+  laves__layer_free(&r->layer);
+  memset(&r->counts, 0, sizeof r->counts);
+  const laves_result result = laves__snap(&r->frame, &r->lattice, &r->layer, &r->counts, r->error);
+  end_stage(r, "snap");
+  return result;
+}
+
+/* Background to snap; repeated with a corrected size when a count was asked for and missed. */
+static laves_result make_boundary(run *r) {
+  enum { CORRECTIONS = 4 };
+  for (int correction = 0;; correction++) {
+    laves_result result = make_background(r);
+    if (result == LAVES_OK) result = classify(r);
+    if (result == LAVES_OK) result = snap(r);
+    if (result != LAVES_OK) return result;
+    int64_t vertices, tets;
+    laves__assemble_estimate(&r->lattice, &r->layer, &vertices, &tets);
+    const double factor = laves__options_correction(r->options, tets, vertices);
+    if (tets == 0) {
+      const double diagonal = box3_diagonal(r->domain->oracle.bounds);
+      return laves__fail(
+          r->error, LAVES_ERROR_INPUT,
+          "nothing of the solid is resolved at size %g (the box around it has a diagonal of %g); choose a smaller size",
+          r->frame.size, diagonal);
+    }
+    if (factor == 1 || correction == CORRECTIONS) return LAVES_OK;
+    r->frame.size *= factor;
+  }
+}
+
+/* Improvement aims a little inside the asked window, so that the last digits of its iterations do not matter. */
+static laves_result improve(run *r) {
+  if (!r->options->improve) return LAVES_OK;
+  begin_stage(r);
+  const laves__window aim = {.min_dihedral = r->options->min_dihedral + 1.5,
+                             .max_dihedral = fmin(r->options->max_dihedral - 3, 179),
+                             .volume_length = r->options->volume_length > 0 ? r->options->volume_length + 0.05 : 0};
+  const laves_result result = laves__improve(&r->frame, &aim, &r->layer, r->error);
+  end_stage(r, "improve");
+  return result;
+}
+
+static laves_result name_groups(const run *r, laves_mesh *mesh) {
+  if (!laves__mesh_add_group(mesh, 3, 1, "solid")) return laves__fail_memory(r->context, r->error);
+  const int tags = mesh->face_tags ? r->domain->info.tag_count : 0;
+  if (tags == 0 && !laves__mesh_add_group(mesh, 2, 1, "boundary")) return laves__fail_memory(r->context, r->error);
+  for (int i = 0; i < tags; i++)
+    if (!laves__mesh_add_group(mesh, 2, i + 1, r->domain->tag_names[i])) return laves__fail_memory(r->context, r->error);
+  return LAVES_OK;
+}
+
+static laves_result make_mesh(run *r, laves_mesh **mesh) {
+  begin_stage(r);
+  laves_result result = laves__assemble(&r->frame, &r->lattice, &r->layer, mesh, r->error);
+  if (result == LAVES_OK) result = name_groups(r, *mesh);
+  end_stage(r, "mesh");
+  return result;
+}
+
+/* The last word on targets: what was asked and is not there. */
+static laves_result judge(run *r, const laves_mesh *mesh) {
+  const laves_options *o = r->options;
+  laves_report *report = r->report;
+  report->size = r->frame.size;
+  report->lattice_tets = mesh->lattice_tet_count;
+  report->snapped_vertices = r->counts.snapped;
+  report->pinches = r->counts.pinches;
+  report->off_surface = 0;
+  for (size_t v = 0; v < r->layer.vertex_count; v++) report->off_surface += r->layer.off_surface[v] && r->layer.star[v].count > 0;
+  report->outside_window =
+      laves__improve_outside(&(laves__window){o->min_dihedral, o->max_dihedral, o->volume_length}, &r->layer);
+  report->peak_bytes = laves_context_peak_bytes(r->context);
+  if (report->pinches)
+    warn(r, "at %zu places the solid is thinner than the size, or its parts closer; walls were trimmed or parts set apart there",
+         report->pinches);
+  if (report->off_surface)
+    warn(r, "%zu boundary vertices stand off the surface, where it is too sharp or thin for the size", report->off_surface);
+  if (report->outside_window)
+    warn(r, "%zu tetrahedra are outside the asked window of %g to %g degrees and volume-length %g", report->outside_window,
+         o->min_dihedral, o->max_dihedral, o->volume_length);
+  const double wished = o->tet_target ? (double)o->tet_target : (double)o->vertex_target;
+  const double got = o->tet_target ? (double)mesh->tet_count : (double)mesh->vertex_count;
+  if (wished > 0 && fabs(got / wished - 1) > 0.03) {
+    warn(r, "%.0f %s were asked for and %.0f made: the count can't be met within 3 %%", wished,
+         o->tet_target ? "tetrahedra" : "vertices", got);
+    return LAVES_TARGET_MISSED;
+  }
+  return LAVES_OK;
+}
+
+laves_result laves_generate(laves_context *context, const laves_domain *domain, const laves_options *options, laves_mesh **mesh,
+                            laves_report *report, laves_error *error) {
+  laves_report own_report;
+  run r = {.context = context, .domain = domain, .options = options, .report = report ? report : &own_report, .error = error};
+  memset(r.report, 0, sizeof *r.report);
+  *mesh = NULL;
+  laves__progress_reset(context);
+
+  laves_result result = laves__options_check(options, error);
+  if (result == LAVES_OK) result = choose_frame(&r);
+  if (result == LAVES_OK) result = make_boundary(&r);
+  if (result == LAVES_OK) result = improve(&r);
+  if (result == LAVES_OK) result = make_mesh(&r, mesh);
+  if (result == LAVES_OK) result = judge(&r, *mesh);
+
+  if (result != LAVES_OK && result != LAVES_TARGET_MISSED) {
+    laves_mesh_free(*mesh);
+    *mesh = NULL;
+  }
+  laves__layer_free(&r.layer);
+  laves__lattice_free(&r.lattice);
+  return result;
+}

@@ -1,0 +1,61 @@
+/* Stage "snap": the boundary without cuts.
+ *
+ * Every edge of the tiling whose ends differ in sign gets an end ON the surface; the vertices ON move to it; the tetrahedra
+ * without an OUT vertex and with at least one IN vertex stay. No tile is cut, so the boundary layer keeps the tiling's good
+ * connectivity. The three steps are separate files:
+ *
+ *     cover.c   which vertices go ON: a small vertex cover of the crossing edges, nearest to the surface first
+ *     pinch.c   places where the result would touch itself are trimmed or parted, so that the boundary is a manifold
+ *     place.c   the boundary layer as a mesh of its own, ON vertices moved to the surface
+ */
+#ifndef LAVES_SNAP_SNAP_H
+#define LAVES_SNAP_SNAP_H
+
+#include "background/lattice.h"
+#include "mesh/layer.h"
+
+typedef struct laves__snap_counts {
+  size_t snapped;     /* vertices ON the surface */
+  size_t pinches;     /* vertices at which the boundary touched itself */
+  size_t off_surface; /* vertices that stay off the surface to keep their tets positive */
+} laves__snap_counts;
+
+/* Sets labels of the lattice and makes the layer.
+ * Promise: the boundary is a closed 2-manifold, every tet is positive (by an exact test), the connectivity is the
+ * tiling's. The layer has no tets when nothing is inside at this size.
+ * LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
+laves_result laves__snap(const laves__frame *frame, laves__lattice *lattice, laves__layer *layer, laves__snap_counts *counts,
+                         laves_error *error);
+
+/* The first step alone: labels. */
+laves_result laves__cover(const laves__frame *frame, laves__lattice *lattice, laves_error *error);
+
+/* A site at which the kept tets form more than one fan; each fan becomes a vertex of its own. */
+typedef struct laves__parted_site {
+  uint32_t site; /* record * LAVES__C15_SITES + site */
+  int fan_count;
+  uint32_t fan[16];   /* bits of the site's star */
+  int32_t vertex[16]; /* in the layer */
+} laves__parted_site;
+
+typedef struct laves__parted {
+  laves__parted_site *item; /* ascending by site */
+  size_t count, capacity;
+} laves__parted;
+
+/* The second step: labels change until every ON site's kept tets form fans that each border on one piece of the outside;
+ * sites with several fans are listed. Makes records where labels reach deeper. */
+laves_result laves__pinch_repair(laves__lattice *lattice, laves__parted *parted, size_t *pinches, laves_error *error);
+
+/* Where an ON site shall stand: the nearest point of the surface or, where that can't be found, the nearest crossing of
+ * its own edges. False when neither exists (a site that was trimmed free). */
+bool laves__site_foot(const laves__frame *frame, const laves__lattice *lattice, int32_t record, int site, uint32_t *hint,
+                      laves__vec3 *foot, laves__vec3 *normal);
+
+/* The third step. */
+laves_result laves__layer_build(const laves__frame *frame, laves__lattice *lattice, laves__parted *parted, laves__layer *layer,
+                                laves_error *error);
+/* Draws vertices back from the surface, as little as needed, until every tet is positive; counts them. */
+size_t laves__layer_untangle(laves__layer *layer, const laves__vec3 *start);
+
+#endif
