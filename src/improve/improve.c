@@ -12,7 +12,7 @@
 #include "improve/relax.h"
 #include "improve/smooth.h"
 
-enum { SWEEPS = 2, SMOOTH_PASSES = 5, CONTRACT_PASSES = 5 };
+enum { SWEEPS = 2, SMOOTH_PASSES = 5, CONTRACT_PASSES = 12 };
 static const double block_side = 15;    /* sizes; see above */
 static const double worthwhile = 0.02;  /* share of bad tets that a pass must cure to be followed by its like */
 static const double settle_floor = 0.2; /* quality that bringing a vertex back to the surface may cost: about 18 degrees */
@@ -132,15 +132,16 @@ static laves_result run_pass(work *w, size_t *before, laves_error *error) {
   return LAVES_OK;
 }
 
-/* Passes of one kind until one of them cures too little. */
-static laves_result run_passes(work *w, int passes, laves_error *error) {
-  size_t last = SIZE_MAX;
-  for (int pass = 0; pass < passes; pass++) {
+/* Passes of one kind until `patience` of them in a row found too little cured. (A contraction may leave more bad tets than
+ * it found, all of them better than the worst was; the next pass smooths them.) */
+static laves_result run_passes(work *w, int passes, int patience, laves_error *error) {
+  size_t best = SIZE_MAX;
+  for (int pass = 0, idle = 0; pass < passes && idle < patience; pass++) {
     size_t before = 0;
     const laves_result result = run_pass(w, &before, error);
     if (result != LAVES_OK || before == 0) return result;
-    if ((double)before > (1 - worthwhile) * (double)last) break;
-    last = before;
+    idle = (double)before > (1 - worthwhile) * (double)best ? idle + 1 : 0;
+    if (before < best) best = before;
   }
   return LAVES_OK;
 }
@@ -161,10 +162,10 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
   if (!laves__parallel_for(context, "improve", layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
   if (result == LAVES_OK) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
-  if (result == LAVES_OK) result = run_passes(&w, SMOOTH_PASSES, error);
+  if (result == LAVES_OK) result = run_passes(&w, SMOOTH_PASSES, 1, error);
   if (result == LAVES_OK) settle_all(&w);
   w.contract = true;
-  if (result == LAVES_OK) result = run_passes(&w, CONTRACT_PASSES, error);
+  if (result == LAVES_OK) result = run_passes(&w, CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) settle_all(&w);
   for (int i = 0; i < workers; i++) laves__journal_free(&w.journal[i]);
   laves__free(context, w.journal, (size_t)workers, sizeof *w.journal);
