@@ -1,0 +1,131 @@
+/* Tapes at one point with gradient: forward differentiation, each register a value and three derivatives.
+ *
+ * Values are those of the batch evaluation, bit for bit. Where a derivative does not exist (the tip of a norm, the root of
+ * zero) it is zero, so a kink never spoils the gradient of what is joined to it. */
+#include "domain/elementary.h"
+#include "domain/tape.h"
+
+typedef laves__dual dual;
+
+static inline dual with(double value, laves__vec3 gradient) { return (dual){value, gradient}; }
+static inline dual chain(double value, double slope, dual a) { return (dual){value, v3_scale(a.gradient, slope)}; }
+static inline dual chain2(double value, double slope_a, dual a, double slope_b, dual b) {
+  return (dual){value, v3_mad(v3_scale(a.gradient, slope_a), b.gradient, slope_b)};
+}
+
+static double inverse(double x) { return x != 0 ? 1 / x : 0; }
+
+static dual power(dual a, dual b) {
+  const double value = pow_of(a.value, b.value);
+  if (!(a.value > 0)) return with(value, v3(0, 0, 0));
+  return chain2(value, b.value * value / a.value, a, value * log_of(a.value), b);
+}
+
+static dual quotient(dual a, dual b) {
+  const double value = a.value / b.value;
+  return chain2(value, inverse(b.value), a, -value * inverse(b.value), b);
+}
+
+static dual norm3(dual a, dual b, dual c) {
+  const double value = norm3_of(a.value, b.value, c.value), s = inverse(value);
+  return with(value, v3_mad(v3_mad(v3_scale(a.gradient, a.value * s), b.gradient, b.value * s), c.gradient, c.value * s));
+}
+
+static dual angle(dual y, dual x) {
+  const double s = inverse(x.value * x.value + y.value * y.value);
+  return chain2(atan2(y.value, x.value), x.value * s, y, -y.value * s, x);
+}
+
+/* The gradient of a distance is the direction from the foot, or the normal where that is too short to tell. */
+static dual leaf_value(const laves__oracle *leaf, dual a, dual b, dual c) {
+  const laves__vec3 p = v3_sub(v3(a.value, b.value, c.value), leaf->origin);
+  double phi;
+  uint32_t hint;
+  leaf->evaluate(leaf->self, 1, &p, &phi, &hint);
+  laves__vec3 foot, normal, slope = v3(0, 0, 0);
+  if (leaf->project(leaf->self, p, fabs(phi) * 2 + 1e-12 * box3_diagonal(leaf->bounds), &hint, &foot, &normal)) {
+    const laves__vec3 way = v3_sub(p, foot);
+    slope = v3_norm(way) > 1e-9 * box3_diagonal(leaf->bounds) ? v3_unit(v3_scale(way, phi < 0 ? -1 : 1)) : normal;
+  }
+  return with(phi, v3_mad(v3_mad(v3_scale(a.gradient, slope.x), b.gradient, slope.y), c.gradient, slope.z));
+}
+
+static inline dual apply(const laves__tape *tape, const laves__instruction *p, dual a, dual b, dual c) {
+  switch ((laves__op)p->op) {
+    case LAVES__OP_NEGATE:
+      return chain(-a.value, -1, a);
+    case LAVES__OP_ABS:
+      return a.value < 0 ? chain(-a.value, -1, a) : a;
+    case LAVES__OP_SQUARE:
+      return chain(a.value * a.value, 2 * a.value, a);
+    case LAVES__OP_SQRT: {
+      const double root = sqrt_of(a.value);
+      return chain(root, 0.5 * inverse(root), a);
+    }
+    case LAVES__OP_SIN:
+      return chain(sin_of(a.value), cos_of(a.value), a);
+    case LAVES__OP_COS:
+      return chain(cos_of(a.value), -sin_of(a.value), a);
+    case LAVES__OP_TAN: {
+      const double t = tan_of(a.value);
+      return chain(t, 1 + t * t, a);
+    }
+    case LAVES__OP_ASIN:
+      return chain(asin_of(a.value), inverse(sqrt_of(1 - a.value * a.value)), a);
+    case LAVES__OP_ACOS:
+      return chain(acos_of(a.value), -inverse(sqrt_of(1 - a.value * a.value)), a);
+    case LAVES__OP_EXP: {
+      const double e = exp_of(a.value);
+      return chain(e, e, a);
+    }
+    case LAVES__OP_LOG:
+      return chain(log_of(a.value), a.value > 0 ? 1 / a.value : 0, a);
+    case LAVES__OP_FLOOR:
+      return with(floor_of(a.value), v3(0, 0, 0));
+    case LAVES__OP_ADD:
+      return with(a.value + b.value, v3_add(a.gradient, b.gradient));
+    case LAVES__OP_SUB:
+      return with(a.value - b.value, v3_sub(a.gradient, b.gradient));
+    case LAVES__OP_MUL:
+      return chain2(a.value * b.value, b.value, a, a.value, b);
+    case LAVES__OP_DIV:
+      return quotient(a, b);
+    case LAVES__OP_MIN:
+      return a.value < b.value ? a : b;
+    case LAVES__OP_MAX:
+      return a.value > b.value ? a : b;
+    case LAVES__OP_POW:
+      return power(a, b);
+    case LAVES__OP_ATAN2:
+      return angle(a, b);
+    case LAVES__OP_MOD:
+      return chain2(mod_of(a.value, b.value), 1, a, b.value != 0 ? -floor_of(a.value / b.value) : 0, b);
+    case LAVES__OP_NORM2: {
+      const double n = norm2_of(a.value, b.value), s = inverse(n);
+      return chain2(n, a.value * s, a, b.value * s, b);
+    }
+    case LAVES__OP_NORM3:
+      return norm3(a, b, c);
+    case LAVES__OP_LEAF:
+      return leaf_value(&tape->leaves[p->leaf], a, b, c);
+    default:
+      return with(NAN, v3(0, 0, 0));
+  }
+}
+
+laves__dual laves__tape_gradient(const laves__tape *tape, laves__vec3 point) {
+  dual registers[LAVES__REGISTER_LIMIT];
+  registers[0] = with(point.x, v3(1, 0, 0));
+  registers[1] = with(point.y, v3(0, 1, 0));
+  registers[2] = with(point.z, v3(0, 0, 1));
+  const laves__instruction *end = tape->instructions + tape->count;
+  dual result = registers[0];
+  for (const laves__instruction *p = tape->instructions; p < end; p++) {
+    const dual constant = with(p->constant, v3(0, 0, 0));
+    const dual a = p->operand[0] == LAVES__OPERAND_CONSTANT ? constant : registers[p->operand[0]];
+    const dual b = p->operand[1] == LAVES__OPERAND_CONSTANT ? constant : registers[p->operand[1]];
+    result = apply(tape, p, a, b, registers[p->operand[2]]);
+    registers[p->out] = result;
+  }
+  return result;
+}
