@@ -1,0 +1,251 @@
+/* The sandbox: runs a Lua chunk with a vocabulary of solids and with bounds on all that it may use.
+ *
+ * The chunk sees a table of its own: the vocabulary, and of Lua what computes without reaching outside or hiding an error
+ * (no pcall, so that no limit can be swallowed; no load, require, io, os, debug, coroutines, metatables; of strings
+ * no patterns and no rep, whose cost a step counter does not see). Text only, no byte code. Memory is counted
+ * by the allocator, steps by a hook, and a clock catches what is slow in few steps. pairs() goes in sorted order and
+ * math.random() starts from a fixed seed, so a script means the same solid on every run. */
+#include "domain/script.h"
+
+#include <lauxlib.h>
+#include <lua.h>
+#include <lualib.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Lua's own memory; the solid is counted apart, by LAVES__NODE_LIMIT. */
+static const size_t lua_byte_limit = (size_t)64 << 20;
+/* Virtual machine instructions: about 0.2 seconds of plain arithmetic. */
+static const size_t step_limit = 20000000;
+/* Few steps can be slow (inserting at the front of a huge table); far above what honest scripts take. */
+static const double second_limit = 10;
+/* Steps between two looks at the clock. */
+enum { STEPS_PER_LOOK = 1000 };
+
+laves__script *laves__script_of(lua_State *L) { return *(laves__script **)lua_getextraspace(L); }
+
+/* ---- limits ---- */
+
+/* The line that the script has come to, or 0. Walks call records only, so it is safe inside the allocator. */
+static int current_line(lua_State *L) {
+  lua_Debug record;
+  for (int level = 0; lua_getstack(L, level, &record); level++)
+    if (lua_getinfo(L, "l", &record) && record.currentline > 0) return record.currentline;
+  return 0;
+}
+
+static void *allocate(void *user, void *block, size_t old_bytes, size_t new_bytes) {
+  laves__script *script = user;
+  if (!block) old_bytes = 0; /* Lua passes a kind of object there */
+  if (new_bytes == 0) {
+    laves__free(script->context, block, old_bytes, 1);
+    script->lua_bytes -= old_bytes;
+    return NULL;
+  }
+  if (new_bytes > old_bytes && script->lua_bytes - old_bytes + new_bytes > lua_byte_limit) {
+    script->over_limit = true;
+  } else {
+    void *result = laves__realloc(script->context, block, old_bytes, new_bytes, 1);
+    if (result) {
+      script->lua_bytes += new_bytes - old_bytes;
+      return result;
+    }
+    script->over_memory = true;
+  }
+  if (script->lua) script->line = current_line(script->lua);
+  return NULL;
+}
+
+static void look(lua_State *L, lua_Debug *record) {
+  (void)record;
+  laves__script *script = laves__script_of(L);
+  script->steps += STEPS_PER_LOOK;
+  if (script->steps > step_limit)
+    luaL_error(L, "the script takes more than %d million steps; is there an endless loop?", (int)(step_limit / 1000000));
+  if (laves__wall_seconds() - script->started > second_limit)
+    luaL_error(L, "the script runs for more than %d seconds; is there an endless loop?", (int)second_limit);
+  if (laves__cancelled(script->context, "script", 0)) {
+    script->cancelled = true;
+    luaL_error(L, "cancelled");
+  }
+}
+
+/* ---- what of Lua the script sees ---- */
+
+static int compare_keys(lua_State *L, int a, int b) {
+  const bool number_a = lua_type(L, a) == LUA_TNUMBER, number_b = lua_type(L, b) == LUA_TNUMBER;
+  if (number_a != number_b) return number_a;
+  return lua_compare(L, a, b, LUA_OPLT);
+}
+
+/* Lua function for table.sort: numbers before strings, each ascending. */
+static int key_is_less(lua_State *L) {
+  lua_pushboolean(L, compare_keys(L, 1, 2));
+  return 1;
+}
+
+/* Iterator over upvalues: table, sorted keys, position. */
+static int next_sorted(lua_State *L) {
+  const lua_Integer position = lua_tointeger(L, lua_upvalueindex(3)) + 1;
+  lua_pushinteger(L, position);
+  lua_replace(L, lua_upvalueindex(3));
+  if (lua_geti(L, lua_upvalueindex(2), position) == LUA_TNIL) return 1;
+  lua_pushvalue(L, -1);
+  lua_gettable(L, lua_upvalueindex(1));
+  return 2;
+}
+
+/* pairs() in the order of the keys: Lua's own order changes from run to run. Upvalue: table.sort. */
+static int sorted_pairs(lua_State *L) {
+  luaL_checktype(L, 1, LUA_TTABLE);
+  lua_settop(L, 1);
+  lua_pushvalue(L, 1);
+  lua_newtable(L);
+  lua_Integer count = 0;
+  for (lua_pushnil(L); lua_next(L, 2); lua_pop(L, 1)) {
+    const int type = lua_type(L, -2);
+    if (type != LUA_TNUMBER && type != LUA_TSTRING) return luaL_error(L, "pairs needs keys that are numbers or strings");
+    lua_pushvalue(L, -2);
+    lua_seti(L, 3, ++count);
+  }
+  lua_pushvalue(L, lua_upvalueindex(1));
+  lua_pushvalue(L, 3);
+  lua_pushcfunction(L, key_is_less);
+  lua_call(L, 2, 0);
+  lua_pushinteger(L, 0);
+  lua_pushcclosure(L, next_sorted, 3);
+  return 1;
+}
+
+static void copy_fields(lua_State *L, int from, int to, const char *const *names) {
+  for (; *names; names++) {
+    lua_getfield(L, from, *names);
+    lua_setfield(L, to, *names);
+  }
+}
+
+/* Loads a library and leaves a table of the chosen ones of its functions. */
+static void push_library(lua_State *L, const char *name, lua_CFunction open, const char *const *names) {
+  luaL_requiref(L, name, open, 0);
+  lua_newtable(L);
+  copy_fields(L, lua_gettop(L) - 1, lua_gettop(L), names);
+  lua_remove(L, -2);
+}
+
+/* Leaves the script's globals on the stack. */
+static void push_globals(lua_State *L) {
+  static const char *const base[] = {"assert", "error", "ipairs", "select", "tonumber", "tostring", "type", NULL};
+  static const char *const table[] = {"concat", "insert", "remove", "sort", "unpack", "pack", NULL};
+  static const char *const string[] = {"byte", "char", "format", "len", "lower", "reverse", "sub", "upper", NULL};
+  static const char *const math[] = {"huge", "pi",     "maxinteger", "mininteger", "tointeger", "type",
+                                     "ult",  "random", "randomseed", "fmod",       "modf",      NULL};
+  push_library(L, "_G", luaopen_base, base);
+  const int globals = lua_gettop(L);
+
+  push_library(L, LUA_TABLIBNAME, luaopen_table, table);
+  lua_getfield(L, -1, "sort");
+  lua_pushcclosure(L, sorted_pairs, 1);
+  lua_setfield(L, globals, "pairs");
+  lua_setfield(L, globals, "table");
+
+  push_library(L, LUA_STRLIBNAME, luaopen_string, string);
+  lua_pushliteral(L, "");
+  lua_getmetatable(L, -1); /* so that ("text"):upper() finds the chosen functions only */
+  lua_pushvalue(L, -3);
+  lua_setfield(L, -2, "__index");
+  lua_pop(L, 2);
+  lua_setfield(L, globals, "string");
+
+  push_library(L, LUA_MATHLIBNAME, luaopen_math, math);
+  lua_getfield(L, -1, "randomseed");
+  lua_pushinteger(L, 1);
+  lua_call(L, 1, 0);
+  lua_setfield(L, globals, "math");
+
+  laves__script_add_fields(L);
+  laves__script_add_primitives(L);
+  laves__script_add_solids(L);
+}
+
+/* ---- running ---- */
+
+typedef struct job {
+  const char *text;
+  size_t length;
+  bool is_expression;
+} job;
+
+typedef struct text_reader {
+  const char *part[2];
+  size_t length[2];
+  int next;
+} text_reader;
+
+static const char *read_part(lua_State *L, void *user, size_t *length) {
+  (void)L;
+  text_reader *reader = user;
+  while (reader->next < 2 && reader->length[reader->next] == 0) reader->next++;
+  if (reader->next == 2) {
+    *length = 0;
+    return NULL;
+  }
+  *length = reader->length[reader->next];
+  return reader->part[reader->next++];
+}
+
+/* Runs within lua_pcall; upvalue-free, the job is a light userdata. Leaves the solid in the model. */
+static int run(lua_State *L) {
+  const job *work = lua_touserdata(L, 1);
+  laves__script *script = laves__script_of(L);
+  push_globals(L);
+  text_reader reader = {{"return ", work->text}, {work->is_expression ? 7 : 0, work->length}, 0};
+  lua_pushfstring(L, "=%s", script->name);
+  if (lua_load(L, read_part, &reader, lua_tostring(L, -1), "t") != LUA_OK) return lua_error(L);
+  lua_pushvalue(L, 2);
+  lua_setupvalue(L, -2, 1);
+  lua_sethook(L, look, LUA_MASKCOUNT, STEPS_PER_LOOK);
+  lua_call(L, 0, 1);
+  lua_sethook(L, NULL, 0, 0);
+  if (!laves__script_value(L, -1))
+    return luaL_error(L, "%s: the script yields %s; it must return a solid, or a field that is negative inside", script->name,
+                      laves__script_type(L, -1));
+  script->model->shape = laves__script_solid(L, -1, "return");
+  return 0;
+}
+
+static laves_result explain(laves__script *script, lua_State *L, int status, laves_error *error) {
+  if (script->cancelled) return laves__fail_cancelled(error);
+  if (script->over_memory || script->model->expression.out_of_memory) return laves__fail_memory(script->context, error);
+  if (status == LUA_ERRMEM || script->over_limit)
+    return laves__fail(error, LAVES_ERROR_INPUT,
+                       "%s:%d: the script needs more than %d MiB of memory; does it grow a table or string without end?",
+                       script->name, script->line, (int)(lua_byte_limit >> 20));
+  const char *text = lua_tostring(L, -1);
+  return laves__fail(error, LAVES_ERROR_INPUT, "%s", text ? text : "the script raised an error that is not a text");
+}
+
+laves_result laves__script_run(laves_context *context, const char *text, size_t length, bool is_expression, const char *name,
+                               const char *folder, laves__model *model, laves_error *error) {
+  *model = (laves__model){0};
+  laves__expression_init(&model->expression, context);
+  laves__script script = {.context = context, .model = model, .name = name, .folder = folder, .started = laves__wall_seconds()};
+  lua_State *L = lua_newstate(allocate, &script);
+  if (!L) return laves__fail_memory(context, error);
+  script.lua = L;
+  *(laves__script **)lua_getextraspace(L) = &script;
+  job work = {text, length, is_expression};
+  lua_pushcfunction(L, run);
+  lua_pushlightuserdata(L, &work);
+  const int status = lua_pcall(L, 1, 0, 0);
+  const laves_result result = status == LUA_OK ? LAVES_OK : explain(&script, L, status, error);
+  script.lua = NULL;
+  lua_close(L);
+  return result;
+}
+
+void laves__model_free(laves_context *context, laves__model *model) {
+  for (size_t i = 0; i < model->leaf_count; i++) laves_domain_free(model->leaves[i]);
+  laves__free(context, model->leaves, model->leaf_capacity, sizeof *model->leaves);
+  laves__expression_free(&model->expression);
+  *model = (laves__model){0};
+}

@@ -1,0 +1,85 @@
+/* Lua scripts that describe solids: run once in a sandbox, they leave an expression.  docs/implicit.md is the manual. */
+#ifndef LAVES_DOMAIN_SCRIPT_H
+#define LAVES_DOMAIN_SCRIPT_H
+
+#include "domain/oracle.h"
+#include "domain/shape.h"
+
+struct lua_State;
+
+/* What a script leaves. */
+typedef struct laves__model {
+  laves__expression expression;
+  laves__shape shape;    /* the solid; its node is in `expression` */
+  laves_domain **leaves; /* surfaces that LEAF nodes number */
+  size_t leaf_count, leaf_capacity;
+} laves__model;
+
+/* Arguments as of laves__implicit_build(). The model is set up here; free it in any case. */
+laves_result laves__script_run(laves_context *context, const char *text, size_t length, bool is_expression, const char *name,
+                               const char *folder, laves__model *model, laves_error *error);
+void laves__model_free(laves_context *context, laves__model *model);
+
+/* ---- between script.c, which runs, and script_*.c, which define the vocabulary ---- */
+
+typedef struct laves__script {
+  laves_context *context;
+  struct lua_State *lua;
+  laves__model *model;
+  const char *name, *folder;
+  size_t lua_bytes;
+  size_t steps;
+  double started;   /* laves__wall_seconds(), moved on by the time that files take */
+  bool over_limit;  /* Lua's memory passed its cap */
+  bool over_memory; /* the context refused memory */
+  bool cancelled;
+  int line; /* where memory ran short; 0: unknown */
+} laves__script;
+
+laves__script *laves__script_of(struct lua_State *L);
+
+/* A value of the vocabulary: a solid, or a field of numbers over space. */
+typedef enum laves__value_kind { LAVES__FIELD, LAVES__SOLID } laves__value_kind;
+typedef struct laves__value {
+  laves__shape shape; /* of a field only the node counts */
+  laves__value_kind kind;
+} laves__value;
+
+/* Pushes a value; raises a Lua error if its making failed. */
+int laves__script_push(struct lua_State *L, laves__value_kind kind, laves__shape shape);
+/* NULL when the stack item is not a value. */
+laves__value *laves__script_value(struct lua_State *L, int index);
+/* The item as a solid: a field counts as the solid where it is negative. Raises an error for anything else. */
+laves__shape laves__script_solid(struct lua_State *L, int index, const char *function);
+/* A phrase for messages: "a solid", "a field", "a number", ... */
+const char *laves__script_type(struct lua_State *L, int index);
+
+/* Parameters of a function, given by position or in one table by name. */
+typedef enum laves__parameter_kind {
+  LAVES__ANY,         /* a finite number */
+  LAVES__POSITIVE,    /* > 0 */
+  LAVES__NONNEGATIVE, /* >= 0 */
+  LAVES__COUNT,       /* an integer of 1 to a million */
+  LAVES__VECTOR,      /* {x, y, z}, or "x", "y", "z", or three numbers by position; takes three places of the result */
+  LAVES__COUNTS       /* the same, of counts */
+} laves__parameter_kind;
+
+typedef struct laves__parameter {
+  const char *name;
+  laves__parameter_kind kind;
+  double fallback; /* NAN: must be given. For a vector: its z, with x and y zero. */
+} laves__parameter;
+
+/* Reads the arguments from stack item `first` on; raises an error that names function and parameter. */
+void laves__script_arguments(struct lua_State *L, const char *function, int first, const laves__parameter *parameters, int count,
+                             double *values);
+
+/* The number at a stack item, checked as this parameter. */
+double laves__script_number(struct lua_State *L, const char *function, const laves__parameter *parameter, int index);
+
+/* Adds the vocabulary to the table on top of the stack. */
+void laves__script_add_fields(struct lua_State *L);     /* script_field.c: x, y, z, arithmetic, functions */
+void laves__script_add_primitives(struct lua_State *L); /* script_primitive.c */
+void laves__script_add_solids(struct lua_State *L);     /* script_solid.c: combining and changing; methods of solids */
+
+#endif

@@ -1,0 +1,258 @@
+/* Combining and changing solids in scripts.  Each function is also a method: sphere(1):move(0, 0, 1). */
+#include <lauxlib.h>
+#include <lua.h>
+#include <math.h>
+
+#include "domain/elementary.h"
+#include "domain/script.h"
+
+static const double degree = 3.14159265358979323846 / 180;
+
+static laves__expression *store(lua_State *L) { return &laves__script_of(L)->model->expression; }
+static int push(lua_State *L, laves__shape shape) { return laves__script_push(L, LAVES__SOLID, shape); }
+
+/* ---- Booleans and blends ---- */
+
+typedef struct combination {
+  const char *name;
+  laves__boolean kind;
+  bool smooth; /* the last argument is the width */
+} combination;
+
+static const combination combinations[] = {
+    {"union", LAVES__UNION, false},
+    {"intersection", LAVES__INTERSECTION, false},
+    {"difference", LAVES__DIFFERENCE, false},
+    {"smooth_union", LAVES__UNION, true},
+    {"smooth_intersection", LAVES__INTERSECTION, true},
+    {"smooth_difference", LAVES__DIFFERENCE, true},
+};
+
+/* Lists of solids, as in union({a, b, c}), are spread over the stack. */
+static int spread(lua_State *L, const char *function) {
+  if (!lua_istable(L, 1)) return lua_gettop(L);
+  const lua_Integer count = luaL_len(L, 1);
+  if (count > 100000 || count < 0) luaL_error(L, "%s: at most 100000 solids at once", function);
+  luaL_checkstack(L, (int)count + 10, "too many solids");
+  for (lua_Integer i = 1; i <= count; i++) {
+    lua_geti(L, 1, i);
+    lua_insert(L, (int)i + 1);
+  }
+  lua_remove(L, 1);
+  return lua_gettop(L);
+}
+
+static int combine(lua_State *L) {
+  const combination *c = &combinations[lua_tointeger(L, lua_upvalueindex(1))];
+  int count = spread(L, c->name);
+  double width = 0;
+  if (c->smooth) {
+    const laves__parameter p = {"the width of the blend (the last argument)", LAVES__NONNEGATIVE, NAN};
+    width = laves__script_number(L, c->name, &p, count--);
+  }
+  if (count < 1) return luaL_error(L, "%s: expected solids", c->name);
+  laves__shape result = laves__script_solid(L, 1, c->name);
+  for (int i = 2; i <= count; i++) {
+    const laves__shape next = laves__script_solid(L, i, c->name);
+    result = laves__shape_blend(store(L), c->kind, &result, &next, width);
+  }
+  return push(L, result);
+}
+
+static int complement(lua_State *L) {
+  const laves__shape a = laves__script_solid(L, 1, "complement");
+  return push(L, laves__shape_complement(store(L), &a));
+}
+
+static int offset(lua_State *L) {
+  static const laves__parameter p = {"distance", LAVES__ANY, NAN};
+  double distance;
+  const laves__shape a = laves__script_solid(L, 1, "offset");
+  laves__script_arguments(L, "offset", 2, &p, 1, &distance);
+  return push(L, laves__shape_offset(store(L), &a, distance));
+}
+
+static int shell(lua_State *L) {
+  static const laves__parameter p = {"thickness", LAVES__POSITIVE, NAN};
+  double thickness;
+  const laves__shape a = laves__script_solid(L, 1, "shell");
+  laves__script_arguments(L, "shell", 2, &p, 1, &thickness);
+  return push(L, laves__shape_shell(store(L), &a, thickness));
+}
+
+static int morph(lua_State *L) {
+  static const laves__parameter p = {"t", LAVES__NONNEGATIVE, NAN};
+  const laves__shape a = laves__script_solid(L, 1, "morph"), b = laves__script_solid(L, 2, "morph");
+  double t;
+  laves__script_arguments(L, "morph", 3, &p, 1, &t);
+  if (t > 1) return luaL_error(L, "morph: t must be a number from 0 to 1, not %f", t);
+  return push(L, laves__shape_morph(store(L), &a, &b, t));
+}
+
+static int bounds(lua_State *L) {
+  static const laves__parameter p[] = {{"lower", LAVES__VECTOR, NAN}, {"upper", LAVES__VECTOR, NAN}};
+  const laves__shape a = laves__script_solid(L, 1, "bounds");
+  double v[6];
+  laves__script_arguments(L, "bounds", 2, p, 2, v);
+  for (int i = 0; i < 3; i++)
+    if (!(v[i] < v[3 + i])) return luaL_error(L, "bounds: lower must be below upper in x, y and z");
+  return push(L, laves__shape_bounded(store(L), &a, (laves__box3){v3(v[0], v[1], v[2]), v3(v[3], v[4], v[5])}));
+}
+
+/* ---- transforms ---- */
+
+static int move(lua_State *L) {
+  static const laves__parameter p = {"by", LAVES__VECTOR, NAN};
+  const laves__shape a = laves__script_solid(L, 1, "move");
+  double v[3];
+  laves__script_arguments(L, "move", 2, &p, 1, v);
+  return push(L, laves__shape_move(store(L), &a, v3(v[0], v[1], v[2])));
+}
+
+static laves__vec3 direction(lua_State *L, const char *function, const char *name, const double *v) {
+  const laves__vec3 d = v3(v[0], v[1], v[2]);
+  const double length = v3_norm(d);
+  if (!(length > 1e-150 && length < 1e150)) luaL_error(L, "%s: %s must not be zero", function, name);
+  return d;
+}
+
+/* rotate(solid, angle, axis), or by name. */
+static int rotate(lua_State *L) {
+  static const laves__parameter p[] = {{"angle", LAVES__ANY, NAN}, {"axis", LAVES__VECTOR, 1}};
+  const laves__shape a = laves__script_solid(L, 1, "rotate");
+  double v[4];
+  laves__script_arguments(L, "rotate", 2, p, 2, v);
+  return push(L, laves__shape_rotate(store(L), &a, direction(L, "rotate", "axis", v + 1), v[0] * degree));
+}
+
+/* One factor, or one for each axis. */
+static int scale(lua_State *L) {
+  static const laves__parameter one = {"by", LAVES__ANY, NAN}, three = {"by", LAVES__VECTOR, NAN};
+  const laves__shape a = laves__script_solid(L, 1, "scale");
+  double v[3];
+  if (lua_gettop(L) == 2 && lua_type(L, 2) == LUA_TNUMBER) {
+    laves__script_arguments(L, "scale", 2, &one, 1, v);
+    v[1] = v[2] = v[0];
+  } else {
+    laves__script_arguments(L, "scale", 2, &three, 1, v);
+  }
+  for (int i = 0; i < 3; i++)
+    if (!isnormal(1 / v[i]) || v[i] == 0) return luaL_error(L, "scale: a factor must not be zero");
+  return push(L, laves__shape_scale(store(L), &a, v3(v[0], v[1], v[2])));
+}
+
+static int mirror(lua_State *L) {
+  static const laves__parameter p = {"normal", LAVES__VECTOR, NAN};
+  const laves__shape a = laves__script_solid(L, 1, "mirror");
+  double v[3];
+  laves__script_arguments(L, "mirror", 2, &p, 1, v);
+  return push(L, laves__shape_mirror(store(L), &a, direction(L, "mirror", "normal", v)));
+}
+
+/* ---- repetition: unions of copies ---- */
+
+static int repeat_linear(lua_State *L) {
+  static const laves__parameter p[] = {{"step", LAVES__VECTOR, NAN}, {"count", LAVES__COUNT, NAN}};
+  const laves__shape a = laves__script_solid(L, 1, "repeat_linear");
+  double v[4];
+  laves__script_arguments(L, "repeat_linear", 2, p, 2, v);
+  laves__shape all = a;
+  for (int i = 1; i < (int)v[3] && all.node != LAVES__NO_NODE; i++) {
+    const laves__shape copy = laves__shape_move(store(L), &a, v3_scale(v3(v[0], v[1], v[2]), i));
+    all = laves__shape_boolean(store(L), LAVES__UNION, &all, &copy);
+  }
+  return push(L, all);
+}
+
+static int repeat_grid(lua_State *L) {
+  static const laves__parameter p[] = {{"step", LAVES__VECTOR, NAN}, {"count", LAVES__COUNTS, NAN}};
+  const laves__shape a = laves__script_solid(L, 1, "repeat_grid");
+  double v[6];
+  laves__script_arguments(L, "repeat_grid", 2, p, 2, v);
+  if (v[3] * v[4] * v[5] > 1e6) return luaL_error(L, "repeat_grid: at most a million copies");
+  /* Rows of rows: the copies of a row are shared by all rows, so nodes before lowering stay few. */
+  laves__shape all = a;
+  for (int axis = 0; axis < 3; axis++) {
+    const laves__shape row = all;
+    for (int i = 1; i < (int)v[3 + axis] && all.node != LAVES__NO_NODE; i++) {
+      laves__vec3 by = v3(0, 0, 0);
+      (&by.x)[axis] = v[axis] * i;
+      const laves__shape copy = laves__shape_move(store(L), &row, by);
+      all = laves__shape_boolean(store(L), LAVES__UNION, &all, &copy);
+    }
+  }
+  return push(L, all);
+}
+
+static int repeat_polar(lua_State *L) {
+  static const laves__parameter p[] = {{"count", LAVES__COUNT, NAN}, {"axis", LAVES__VECTOR, 1}, {"angle", LAVES__ANY, 360}};
+  const laves__shape a = laves__script_solid(L, 1, "repeat_polar");
+  double v[5];
+  laves__script_arguments(L, "repeat_polar", 2, p, 3, v);
+  const laves__vec3 axis = direction(L, "repeat_polar", "axis", v + 1);
+  laves__shape all = a;
+  for (int i = 1; i < (int)v[0] && all.node != LAVES__NO_NODE; i++) {
+    const laves__shape copy = laves__shape_rotate(store(L), &a, axis, v[4] * degree * i / v[0]);
+    all = laves__shape_boolean(store(L), LAVES__UNION, &all, &copy);
+  }
+  return push(L, all);
+}
+
+/* ---- bending space ---- */
+
+static laves__node coordinate(lua_State *L, int index) {
+  const laves__value *value = laves__script_value(L, index);
+  if (value && value->kind == LAVES__FIELD) return value->shape.node;
+  static const laves__parameter p = {"a coordinate", LAVES__ANY, NAN};
+  return laves__node_constant(store(L), laves__script_number(L, "warp", &p, index));
+}
+
+/* warp(solid, X, Y, Z): the solid's value at (X, Y, Z). */
+static int warp(lua_State *L) {
+  const laves__shape a = laves__script_solid(L, 1, "warp");
+  lua_settop(L, 4);
+  const laves__node to[3] = {coordinate(L, 2), coordinate(L, 3), coordinate(L, 4)};
+  return push(L, laves__shape_of_node(laves__node_warp(store(L), a.node, to)));
+}
+
+static const luaL_Reg solid_functions[] = {
+    {"complement", complement},
+    {"offset", offset},
+    {"shell", shell},
+    {"morph", morph},
+    {"bounds", bounds},
+    {"move", move},
+    {"translate", move},
+    {"rotate", rotate},
+    {"scale", scale},
+    {"mirror", mirror},
+    {"warp", warp},
+    {"repeat_linear", repeat_linear},
+    {"repeat_grid", repeat_grid},
+    {"repeat_polar", repeat_polar},
+    {NULL, NULL},
+};
+
+/* The table on top gets everything under its name; solids and fields find the same as methods. */
+void laves__script_add_solids(lua_State *L) {
+  lua_newtable(L);
+  luaL_setfuncs(L, solid_functions, 0);
+  for (size_t i = 0; i < LAVES__COUNT_OF(combinations); i++) {
+    lua_pushinteger(L, (lua_Integer)i);
+    lua_pushcclosure(L, combine, 1);
+    lua_setfield(L, -2, combinations[i].name);
+  }
+  for (lua_pushnil(L); lua_next(L, -2);) {
+    lua_pushvalue(L, -2);
+    lua_insert(L, -2);
+    lua_settable(L, -5);
+  }
+  static const char *const kinds[] = {"solid", "field"};
+  for (int i = 0; i < 2; i++) {
+    luaL_getmetatable(L, kinds[i]);
+    lua_pushvalue(L, -2);
+    lua_setfield(L, -2, "__index");
+    lua_pop(L, 1);
+  }
+  lua_pop(L, 1);
+}
