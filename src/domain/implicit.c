@@ -1,0 +1,234 @@
+/* Implicit solids: a script or an expression becomes an oracle.
+ *
+ * The script leaves an expression; its coordinate changes are worked out, constants folded, and the rest compiled to a
+ * tape. Projection is Newton's method along the gradient, p -= phi g / |g|^2, with steps that never let |phi| grow; sides of
+ * boxes come from intervals. Far from the zero point the tape is compiled once more in coordinates relative to the
+ * solid's middle, where transforms and that shift merge into one matrix and lose no digits. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "domain/elementary.h"
+#include "domain/implicit_bounds.h"
+#include "domain/script.h"
+#include "domain/tape.h"
+
+/* A foot has |phi| below this fraction of |gradient| * diagonal: near the rounding of coordinates. */
+static const double foot_tolerance = 1e-13;
+/* What is accepted where rounding in phi forbids more, as a fraction of the same. */
+static const double foot_tolerance_worst = 1e-10;
+enum { NEWTON_LIMIT = 24, HALVING_LIMIT = 12, SAMPLE_DEPTH_LIMIT = 20 };
+/* How much of the promised decrease a step must keep. */
+static const double sufficient_decrease = 1e-3;
+/* Solids further from the zero point than this many diagonals get an origin of their own. */
+static const double far_away = 16;
+
+typedef struct implicit {
+  laves__tape tape; /* in local coordinates */
+  laves__oracle *leaves;
+  laves__model model; /* owns the domains of the leaves; its expression is freed once the tape is made */
+  laves__box3 bounds; /* local */
+  double diagonal;
+  bool is_distance;
+} implicit;
+
+/* ---- the oracle ---- */
+
+static void evaluate(const void *self, size_t count, const laves__vec3 *points, double *phi, uint32_t *hints) {
+  const implicit *s = self;
+  laves__tape_evaluate(&s->tape, count, points, phi);
+  for (size_t i = 0; hints && i < count; i++) hints[i] = LAVES__NO_HINT;
+}
+
+/* A Newton step, halved until it lowers |phi| enough. False when no such step was found; *here is then unchanged. */
+static bool newton_step(const laves__tape *tape, double longest, laves__vec3 *point, laves__dual *here) {
+  const double slope2 = v3_norm2(here->gradient), length = fabs(here->value) / sqrt(slope2);
+  if (!(slope2 > 0) || !isfinite(length)) return false;
+  double t = length > longest ? longest / length : 1;
+  const laves__vec3 step = v3_scale(here->gradient, -here->value / slope2);
+  for (int i = 0; i < HALVING_LIMIT; i++, t *= 0.5) {
+    const laves__vec3 next = v3_mad(*point, step, t);
+    const laves__dual there = laves__tape_gradient(tape, next);
+    if (!(fabs(there.value) <= (1 - sufficient_decrease * t) * fabs(here->value))) continue;
+    *point = next;
+    *here = there;
+    return true;
+  }
+  return false;
+}
+
+static bool project(const void *self, laves__vec3 point, double reach, uint32_t *hint, laves__vec3 *foot, laves__vec3 *normal) {
+  const implicit *s = self;
+  laves__vec3 p = point;
+  laves__dual here = laves__tape_gradient(&s->tape, p);
+  for (int i = 0; i < NEWTON_LIMIT; i++) {
+    if (fabs(here.value) <= foot_tolerance * s->diagonal * v3_norm(here.gradient)) break;
+    if (!newton_step(&s->tape, reach, &p, &here)) break;
+    if (v3_distance(p, point) > 2 * reach) return false;
+  }
+  const double slope = v3_norm(here.gradient);
+  if (!(fabs(here.value) <= foot_tolerance_worst * s->diagonal * slope) || !(slope > 0)) return false;
+  if (!(v3_distance(p, point) <= reach)) return false;
+  *foot = p;
+  *normal = v3_scale(here.gradient, 1 / slope);
+  *hint = LAVES__NO_HINT;
+  return true;
+}
+
+static laves__side side(const void *self, laves__vec3 centre, double radius, laves__vec3 half) {
+  const implicit *s = self;
+  bool may_be_nan;
+  const laves__interval value =
+      laves__tape_interval(&s->tape, (laves__box3){v3_sub(centre, half), v3_add(centre, half)}, &may_be_nan);
+  if (may_be_nan) return LAVES__UNDECIDED;
+  if (value.lower > 0) return LAVES__OUTSIDE;
+  if (value.upper < 0) return LAVES__INSIDE;
+  if (!s->is_distance) return LAVES__UNDECIDED;
+  double phi;
+  laves__tape_evaluate(&s->tape, 1, &centre, &phi);
+  if (fabs(phi) <= radius * (1 + 1e-9)) return LAVES__UNDECIDED;
+  return phi > 0 ? LAVES__OUTSIDE : LAVES__INSIDE;
+}
+
+static void free_implicit(laves_context *context, void *self) {
+  implicit *s = self;
+  if (!s) return;
+  laves__tape_free(context, &s->tape);
+  laves__free(context, s->leaves, s->model.leaf_count, sizeof *s->leaves);
+  laves__model_free(context, &s->model);
+  laves__free(context, s, 1, sizeof *s);
+}
+
+/* ---- samples: where cells of a grid meet the surface ---- */
+
+typedef struct sampler {
+  const implicit *solid;
+  laves__vec3 *points;
+  size_t count, capacity;
+} sampler;
+
+static bool holds(laves__box3 box, laves__vec3 p) {
+  return p.x >= box.lower.x && p.x < box.upper.x && p.y >= box.lower.y && p.y < box.upper.y && p.z >= box.lower.z &&
+         p.z < box.upper.z;
+}
+
+/* A cell that the surface crosses gives the foot of its centre, if that lies within the cell, so feet come about evenly. */
+static void sample_cell(sampler *s, laves__box3 cell, int depth) {
+  if (s->count == s->capacity) return;
+  const laves__vec3 c = box3_centre(cell), half = v3_sub(cell.upper, c);
+  if (side(s->solid, c, v3_norm(half), half) != LAVES__UNDECIDED) return;
+  if (depth == 0) {
+    uint32_t hint = LAVES__NO_HINT;
+    laves__vec3 foot, normal;
+    if (project(s->solid, c, 2 * v3_norm(half), &hint, &foot, &normal) && holds(cell, foot)) s->points[s->count++] = foot;
+    return;
+  }
+  for (int i = 0; i < 8; i++) {
+    const laves__box3 part = {{i & 1 ? c.x : cell.lower.x, i & 2 ? c.y : cell.lower.y, i & 4 ? c.z : cell.lower.z},
+                              {i & 1 ? cell.upper.x : c.x, i & 2 ? cell.upper.y : c.y, i & 4 ? cell.upper.z : c.z}};
+    sample_cell(s, part, depth - 1);
+  }
+}
+
+static size_t sample(const void *self, double spacing, laves__vec3 *points, size_t capacity) {
+  const implicit *solid = self;
+  sampler s = {.solid = solid, .points = points, .capacity = capacity};
+  const laves__vec3 widths = v3_sub(solid->bounds.upper, solid->bounds.lower);
+  const double width = max_of(widths.x, max_of(widths.y, widths.z)) * 1.001;
+  int depth = 0;
+  while (depth < SAMPLE_DEPTH_LIMIT && ldexp(width, -depth) > spacing) depth++;
+  const laves__vec3 half = v3(width / 2, width / 2, width / 2), c = box3_centre(solid->bounds);
+  sample_cell(&s, (laves__box3){v3_sub(c, half), v3_add(c, half)}, depth);
+  return s.count;
+}
+
+/* ---- making ---- */
+
+static laves_result build_tape(implicit *s, laves__vec3 origin, laves_error *error) {
+  laves__expression *e = &s->model.expression;
+  laves__affine shift = laves__affine_identity();
+  shift.t = origin;
+  const laves__node root = laves__expression_lower(e, s->model.shape.node, &shift);
+  if (root == LAVES__NO_NODE) {
+    if (!e->too_large) return laves__fail_memory(e->context, error);
+    return laves__fail(error, LAVES_ERROR_INPUT, "the solid needs more than %d operations; make it of fewer parts",
+                       (int)LAVES__NODE_LIMIT);
+  }
+  return laves__tape_build(e, root, s->leaves, &s->tape, error);
+}
+
+static laves_result find_bounds(implicit *s, const char *name, laves__box3 *box, laves_error *error) {
+  *box = s->model.shape.box;
+  switch (laves__bounds_find(&s->tape, box)) {
+    case LAVES__BOUNDS_EMPTY:
+      return laves__fail(error, LAVES_ERROR_INPUT, "%s: the solid is empty: nothing is inside", name);
+    case LAVES__BOUNDS_ENDLESS:
+      return laves__fail(
+          error, LAVES_ERROR_INPUT,
+          "%s: the solid has no bounds that can be found; intersect it with a box or wrap it in bounds(solid, {x0, "
+          "y0, z0}, {x1, y1, z1})",
+          name);
+    default:
+      break;
+  }
+  const double diagonal = box3_diagonal(*box);
+  if (diagonal > 0 && diagonal < 1e100) return LAVES_OK;
+  return laves__fail(error, LAVES_ERROR_INPUT, "%s: the solid is empty, or its size is beyond all measure (diagonal %g)", name,
+                     diagonal);
+}
+
+static laves_result copy_leaves(implicit *s, laves_context *context, laves_error *error) {
+  const laves__model *m = &s->model;
+  if (!m->leaf_count) return LAVES_OK;
+  s->leaves = laves__alloc(context, m->leaf_count, sizeof *s->leaves);
+  if (!s->leaves) return laves__fail_memory(context, error);
+  for (size_t i = 0; i < m->leaf_count; i++) s->leaves[i] = m->leaves[i]->oracle;
+  return LAVES_OK;
+}
+
+static void fill_domain(laves_domain *domain, implicit *s, laves__box3 box, laves__vec3 origin, bool is_expression) {
+  const laves__shape *shape = &s->model.shape;
+  domain->oracle = (laves__oracle){.self = s,
+                                   .origin = origin,
+                                   .bounds = s->bounds,
+                                   .is_distance = s->is_distance,
+                                   .volume = shape->volume,
+                                   .area = shape->area,
+                                   .evaluate = evaluate,
+                                   .project = project,
+                                   .side = side,
+                                   .sample = sample,
+                                   .free = free_implicit};
+  snprintf(domain->format, sizeof domain->format, "%s", is_expression ? "Lua expression" : "Lua script");
+  domain->info =
+      (laves_domain_info){.kind = LAVES_DOMAIN_IMPLICIT, .format = domain->format, .volume = shape->volume, .area = shape->area};
+  memcpy(domain->info.lower, &box.lower, sizeof domain->info.lower);
+  memcpy(domain->info.upper, &box.upper, sizeof domain->info.upper);
+}
+
+laves_result laves__implicit_build(laves_context *context, const char *text, size_t length, bool is_expression, const char *name,
+                                   const char *folder, laves_domain *domain, laves_error *error) {
+  implicit *s = laves__alloc_zeroed(context, 1, sizeof *s);
+  if (!s) return laves__fail_memory(context, error);
+  laves__box3 box;
+  laves__vec3 origin = v3(0, 0, 0);
+  laves_result result = laves__script_run(context, text, length, is_expression, name, folder, &s->model, error);
+  if (result == LAVES_OK) result = copy_leaves(s, context, error);
+  if (result == LAVES_OK) result = build_tape(s, origin, error);
+  if (result == LAVES_OK) result = find_bounds(s, name, &box, error);
+  if (result == LAVES_OK && v3_norm(box3_centre(box)) > far_away * box3_diagonal(box)) {
+    origin = box3_centre(box);
+    laves__tape_free(context, &s->tape);
+    result = build_tape(s, origin, error);
+  }
+  if (result != LAVES_OK) {
+    free_implicit(context, s);
+    return result;
+  }
+  s->bounds = (laves__box3){v3_sub(box.lower, origin), v3_sub(box.upper, origin)};
+  s->diagonal = box3_diagonal(box);
+  s->is_distance = s->model.shape.exact;
+  laves__expression_free(&s->model.expression);
+  fill_domain(domain, s, box, origin, is_expression);
+  return LAVES_OK;
+}
