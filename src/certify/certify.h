@@ -2,6 +2,7 @@
 #ifndef LAVES_CERTIFY_CERTIFY_H
 #define LAVES_CERTIFY_CERTIFY_H
 
+#include "domain/oracle.h"
 #include "mesh/mesh.h"
 
 /* A boundary as recomputed from the tets: triangles outwards, in the order of their tets. */
@@ -26,8 +27,46 @@ laves_result laves__check_boundary(laves_context *context, const laves_mesh *mes
 laves_result laves__check_shapes(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
                                  laves_check *check, laves_error *error);
 
+/* The boundary alone. */
+laves_result laves__find_boundary(laves_context *context, const laves_mesh *mesh, laves__boundary *boundary, laves_error *error);
+
 /* Shortest, longest and mean edge, each edge once. */
 laves_result laves__check_edges(laves_context *context, const laves_mesh *mesh, laves_check *check, laves_error *error);
+
+/* ---- distances ---- */
+
+/* One measured place, in the coordinates of the mesh. */
+typedef struct laves__sample {
+  laves__vec3 point;
+  double distance; /* to the other side; NAN when none was found */
+  double weight;   /* in means; 0 for samples that only look for the largest distance */
+} laves__sample;
+
+/* Samples in a fixed order: first [0, boundary_count) on the boundary of the mesh with their distances to the domain's surface,
+ * then those on the surface with their distances to the boundary. */
+typedef struct laves__samples {
+  laves_context *context;
+  laves__sample *items;
+  size_t count, boundary_count, capacity;
+  double spacing; /* mean edge of the boundary */
+} laves__samples;
+
+void laves__samples_free(laves__samples *samples);
+
+/* Measures both ways, about six samples a boundary face and five a face's area of the surface. *samples: owned by the
+ * caller on success. */
+laves_result laves__measure_distances(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
+                                      const laves_domain *domain, laves__samples *samples, laves_error *error);
+
+/* Fills the distances of a check. */
+laves_result laves__check_distances(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
+                                    const laves_domain *domain, laves_check *check, laves_error *error);
+
+/* The smallest radius of curvature of the domain's surface within about `reach` of a point (coordinates of the mesh),
+ * seen at that scale; INFINITY where it is flat or absent. */
+double laves__curvature_radius(const laves_domain *domain, laves__vec3 point, double reach);
+
+/* ---- tets and boundaries ---- */
 
 /* The corners of a tet; false when it has none that can be measured (bad indices, or points that are not finite). */
 bool laves__tet_corners(const laves_mesh *mesh, size_t tet, laves__vec3 corners[4]);

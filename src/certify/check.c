@@ -19,13 +19,13 @@ laves_result laves_check_mesh(laves_context *context, const laves_mesh *mesh, co
   check->tets = mesh->tet_count;
   check->faces = mesh->face_count;
   check->domain_volume = NAN;
-  (void)domain;
 
   laves__boundary boundary = {0};
   laves_result result = laves__check_topology(context, mesh, check, &boundary, error);
   if (result == LAVES_OK) result = laves__check_boundary(context, mesh, &boundary, check, error);
   if (result == LAVES_OK) result = laves__check_shapes(context, mesh, &boundary, check, error);
   if (result == LAVES_OK) result = laves__check_edges(context, mesh, check, error);
+  if (result == LAVES_OK && domain) result = laves__check_distances(context, mesh, &boundary, domain, check, error);
   laves__boundary_free(&boundary);
   check->valid = result == LAVES_OK && is_valid(check);
   return result;

@@ -24,18 +24,6 @@ typedef struct survey {
   atomic_size_t bad_indices, inverted, nonconforming, components, unused;
 } survey;
 
-bool laves__tet_corners(const laves_mesh *mesh, size_t tet, laves__vec3 corners[4]) {
-  const int32_t *t = mesh->tets[tet];
-  if (!laves__tet_usable(t, mesh->vertex_count)) return false;
-  for (int i = 0; i < 4; i++) corners[i] = mesh->points[t[i]];
-  return v3_finite(corners[0]) && v3_finite(corners[1]) && v3_finite(corners[2]) && v3_finite(corners[3]);
-}
-
-void laves__boundary_free(laves__boundary *boundary) {
-  if (boundary->context) laves__free(boundary->context, boundary->faces, boundary->count, sizeof *boundary->faces);
-  *boundary = (laves__boundary){0};
-}
-
 /* ---- tets one by one ---- */
 
 static size_t bad_corners(const int32_t tet[4], size_t vertex_count) {

@@ -1,0 +1,194 @@
+/* Nearest points on triangles.
+ *
+ * Triangles are sorted along a Morton curve and cut into leaves of four; above the leaves stands a complete binary tree
+ * of boxes in an array, node i over nodes 2i and 2i + 1, leaves padded with empty boxes to a power of two. A query goes
+ * down nearest box first and drops boxes that are no nearer than what it has.
+ *
+ * The nearest point of a triangle: Ericson, Real-Time Collision Detection, 2005, section 5.1.5, by Voronoi regions. */
+#include "certify/boundary_tree.h"
+
+enum { LEAF_TRIANGLES = 4, MORTON_BITS = 21, STACK = 64 };
+
+typedef struct triangle {
+  laves__vec3 a, b, c;
+} triangle;
+
+struct laves__boundary_tree {
+  laves_context *context;
+  size_t triangle_capacity, triangle_count, leaf_count; /* leaf_count: a power of two */
+  triangle *triangles;
+  laves__box3 *boxes; /* [2 leaf_count], [0] unused */
+};
+
+/* ---- one triangle, one box ---- */
+
+/* Square of the distance from the origin to triangle abc. */
+static double nearest2(laves__vec3 a, laves__vec3 b, laves__vec3 c) {
+  const laves__vec3 ab = v3_sub(b, a), ac = v3_sub(c, a);
+  const double d1 = -v3_dot(ab, a), d2 = -v3_dot(ac, a);
+  if (d1 <= 0 && d2 <= 0) return v3_norm2(a);
+  const double d3 = -v3_dot(ab, b), d4 = -v3_dot(ac, b);
+  if (d3 >= 0 && d4 <= d3) return v3_norm2(b);
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return v3_norm2(v3_mad(a, ab, d1 / (d1 - d3)));
+  const double d5 = -v3_dot(ab, c), d6 = -v3_dot(ac, c);
+  if (d6 >= 0 && d5 <= d6) return v3_norm2(c);
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return v3_norm2(v3_mad(a, ac, d2 / (d2 - d6)));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return v3_norm2(v3_lerp(b, c, (d4 - d3) / ((d4 - d3) + (d5 - d6))));
+  const double sum = va + vb + vc;
+  return v3_norm2(v3_add(a, v3_add(v3_scale(ab, vb / sum), v3_scale(ac, vc / sum))));
+}
+
+static double outside(double x, double lower, double upper) { return x < lower ? lower - x : x > upper ? x - upper : 0; }
+
+static double box_distance2(const laves__box3 *b, laves__vec3 p) {
+  return v3_norm2(
+      v3(outside(p.x, b->lower.x, b->upper.x), outside(p.y, b->lower.y, b->upper.y), outside(p.z, b->lower.z, b->upper.z)));
+}
+
+/* ---- building ---- */
+
+/* Spreads the low 21 bits so that two zeros stand between them. */
+static uint64_t spread(uint64_t x) {
+  x = (x | x << 32) & 0x001f00000000ffff;
+  x = (x | x << 16) & 0x001f0000ff0000ff;
+  x = (x | x << 8) & 0x100f00f00f00f00f;
+  x = (x | x << 4) & 0x10c30c30c30c30c3;
+  return (x | x << 2) & 0x1249249249249249;
+}
+
+static uint64_t cell(double x, double lower, double upper) {
+  const double fraction = upper > lower ? (x - lower) / (upper - lower) : 0;
+  return spread((uint64_t)(fraction * ((1 << MORTON_BITS) - 1)));
+}
+
+static uint64_t morton(laves__vec3 p, const laves__box3 *b) {
+  return cell(p.x, b->lower.x, b->upper.x) | cell(p.y, b->lower.y, b->upper.y) << 1 | cell(p.z, b->lower.z, b->upper.z) << 2;
+}
+
+static triangle triangle_of(const laves_mesh *mesh, const int32_t face[3], laves__vec3 origin) {
+  const laves__vec3 *p = mesh->points;
+  return (triangle){v3_sub(p[face[0]], origin), v3_sub(p[face[1]], origin), v3_sub(p[face[2]], origin)};
+}
+
+static laves__vec3 middle(const triangle *t) { return v3_scale(v3_add(t->a, v3_add(t->b, t->c)), 1.0 / 3); }
+
+static bool is_finite(const triangle *t) { return v3_finite(t->a) && v3_finite(t->b) && v3_finite(t->c); }
+
+/* Fills `order` with the finite triangles along the curve; returns how many. */
+static size_t sort_triangles(const laves_mesh *mesh, const laves__boundary *boundary, laves__vec3 origin, laves__keyed *order,
+                             laves__keyed *scratch) {
+  laves__box3 box = box3_empty();
+  size_t count = 0;
+  for (size_t i = 0; i < boundary->count; i++) {
+    const triangle t = triangle_of(mesh, boundary->faces[i], origin);
+    if (!is_finite(&t)) continue;
+    box = box3_add(box, middle(&t));
+    order[count++].value = i;
+  }
+  for (size_t i = 0; i < count; i++) {
+    const triangle t = triangle_of(mesh, boundary->faces[order[i].value], origin);
+    order[i].key = morton(middle(&t), &box);
+  }
+  laves__sort_keyed(order, scratch, count);
+  return count;
+}
+
+static void fill_boxes(laves__boundary_tree *tree) {
+  for (size_t leaf = 0; leaf < tree->leaf_count; leaf++) {
+    laves__box3 *box = &tree->boxes[tree->leaf_count + leaf];
+    *box = box3_empty();
+    for (size_t i = leaf * LEAF_TRIANGLES; i < (leaf + 1) * LEAF_TRIANGLES && i < tree->triangle_count; i++) {
+      const triangle *t = &tree->triangles[i];
+      *box = box3_add(box3_add(box3_add(*box, t->a), t->b), t->c);
+    }
+  }
+  for (size_t i = tree->leaf_count - 1; i >= 1; i--) {
+    const laves__box3 *low = &tree->boxes[2 * i], *high = &tree->boxes[2 * i + 1];
+    tree->boxes[i] = (laves__box3){v3_min(low->lower, high->lower), v3_max(low->upper, high->upper)};
+  }
+}
+
+laves_result laves__boundary_tree_build(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
+                                        laves__vec3 origin, laves__boundary_tree **tree, laves_error *error) {
+  const size_t count = boundary->count;
+  laves_result result = LAVES_OK;
+  laves__boundary_tree *made = laves__alloc_zeroed(context, 1, sizeof *made);
+  laves__keyed *order = laves__alloc(context, count, sizeof *order), *scratch = laves__alloc(context, count, sizeof *scratch);
+  *tree = NULL;
+  if (!made || !order || !scratch) {
+    result = laves__fail_memory(context, error);
+    goto clean_up;
+  }
+  made->context = context;
+  made->triangle_capacity = count;
+  made->leaf_count = 1;
+  while (made->leaf_count * LEAF_TRIANGLES < count) made->leaf_count *= 2;
+  made->triangles = laves__alloc(context, count, sizeof *made->triangles);
+  made->boxes = laves__alloc(context, 2 * made->leaf_count, sizeof *made->boxes);
+  if (!made->triangles || !made->boxes) {
+    result = laves__fail_memory(context, error);
+    goto clean_up;
+  }
+  made->triangle_count = sort_triangles(mesh, boundary, origin, order, scratch);
+  for (size_t i = 0; i < made->triangle_count; i++)
+    made->triangles[i] = triangle_of(mesh, boundary->faces[order[i].value], origin);
+  fill_boxes(made);
+  *tree = made;
+  made = NULL;
+clean_up:
+  laves__free(context, order, count, sizeof *order);
+  laves__free(context, scratch, count, sizeof *scratch);
+  if (made) {
+    made->context = context;
+    laves__boundary_tree_free(made);
+  }
+  return result;
+}
+
+void laves__boundary_tree_free(laves__boundary_tree *tree) {
+  if (!tree) return;
+  laves_context *context = tree->context;
+  laves__free(context, tree->triangles, tree->triangle_capacity, sizeof *tree->triangles);
+  laves__free(context, tree->boxes, 2 * tree->leaf_count, sizeof *tree->boxes);
+  laves__free(context, tree, 1, sizeof *tree);
+}
+
+/* ---- queries ---- */
+
+static double leaf_nearest2(const laves__boundary_tree *tree, size_t leaf, laves__vec3 p, double best) {
+  for (size_t i = leaf * LEAF_TRIANGLES; i < (leaf + 1) * LEAF_TRIANGLES && i < tree->triangle_count; i++) {
+    const triangle *t = &tree->triangles[i];
+    best = fmin(best, nearest2(v3_sub(t->a, p), v3_sub(t->b, p), v3_sub(t->c, p)));
+  }
+  return best;
+}
+
+double laves__boundary_tree_distance(const laves__boundary_tree *tree, laves__vec3 point) {
+  struct {
+    size_t node;
+    double distance2;
+  } stack[STACK];
+  int depth = 0;
+  double best = INFINITY;
+  if (tree->triangle_count == 0) return INFINITY;
+  stack[depth].node = 1;
+  stack[depth++].distance2 = 0;
+  while (depth > 0) {
+    const size_t node = stack[--depth].node;
+    if (stack[depth].distance2 >= best) continue;
+    if (node >= tree->leaf_count) {
+      best = leaf_nearest2(tree, node - tree->leaf_count, point, best);
+      continue;
+    }
+    const double low = box_distance2(&tree->boxes[2 * node], point), high = box_distance2(&tree->boxes[2 * node + 1], point);
+    const size_t nearer = low <= high ? 2 * node : 2 * node + 1;
+    stack[depth].node = nearer ^ 1;
+    stack[depth++].distance2 = fmax(low, high);
+    stack[depth].node = nearer;
+    stack[depth++].distance2 = fmin(low, high);
+  }
+  return sqrt(best);
+}

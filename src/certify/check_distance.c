@@ -1,0 +1,211 @@
+/* Distances between the boundary of a mesh and the surface of a domain, both ways.
+ *
+ * From the mesh: its boundary vertices, the midpoints of its boundary edges, and four points inside each triangle are
+ * projected on to the surface. The inner points (the centroid and the three points that halve the way from it to the
+ * corners) carry the mean, each a quarter of the triangle's area; vertices and midpoints only look for the maximum.
+ * From the surface: the domain's own samples, at a third of the mean boundary edge, look for the nearest boundary
+ * triangle. Projection starts with a short reach, which is fast, and widens it while nothing is found.
+ *
+ * All work is in the domain's local frame, where no digits are lost far from the origin. */
+#include <string.h>
+
+#include "certify/boundary_tree.h"
+
+enum { SAMPLES_PER_BLOCK = 512, SAMPLES_PER_FACE = 4 + 3 + 3, INNER = 4 };
+
+/* Distance of surface samples in mean boundary edges: about five on the area of a triangle. */
+#define SURFACE_SPACING 0.3
+/* The first reach of a projection in mean boundary edges; it grows by REACH_GROWTH up to the size of everything. */
+#define FIRST_REACH 2.0
+#define REACH_GROWTH 8.0
+/* More samples would say nothing more; the spacing is widened instead. */
+#define SURFACE_SAMPLES_MAX 8e6
+
+void laves__samples_free(laves__samples *samples) {
+  if (samples->context) laves__free(samples->context, samples->items, samples->capacity, sizeof *samples->items);
+  *samples = (laves__samples){0};
+}
+
+/* ---- samples on the mesh ---- */
+
+typedef struct measuring {
+  const laves_mesh *mesh;
+  const laves__boundary *boundary;
+  const laves__oracle *oracle;
+  laves__samples *samples;
+  laves__boundary_tree *tree;
+  double reach, reach_max;
+} measuring;
+
+/* Mean edge of the boundary and the box of its finite points. */
+static double mean_edge(const laves_mesh *mesh, const laves__boundary *boundary, laves__box3 *box) {
+  double sum = 0;
+  size_t count = 0;
+  *box = box3_empty();
+  for (size_t i = 0; i < 3 * boundary->count; i++) {
+    const laves__vec3 a = mesh->points[boundary->faces[i / 3][i % 3]], b = mesh->points[boundary->faces[i / 3][(i + 1) % 3]];
+    const double length = v3_distance(a, b);
+    if (!isfinite(length)) continue;
+    *box = box3_add(*box, a);
+    sum += length;
+    count++;
+  }
+  return count ? sum / (double)count : 0;
+}
+
+static laves__sample sample_at(laves__vec3 point, double weight) { return (laves__sample){point, NAN, weight}; }
+
+/* Each vertex once (where `seen` does not have it yet), each edge where it ascends, and the inner points. */
+static void add_face_samples(const laves_mesh *mesh, const int32_t face[3], uint8_t *seen, laves__samples *samples) {
+  laves__sample *next = samples->items + samples->count;
+  laves__vec3 p[3];
+  for (int i = 0; i < 3; i++) p[i] = mesh->points[face[i]];
+  if (!v3_finite(p[0]) || !v3_finite(p[1]) || !v3_finite(p[2])) return;
+  for (int i = 0; i < 3; i++) {
+    if (!seen[face[i]]) *next++ = sample_at(p[i], 0);
+    seen[face[i]] = 1;
+    if (face[i] < face[(i + 1) % 3]) *next++ = sample_at(v3_lerp(p[i], p[(i + 1) % 3], 0.5), 0);
+  }
+  const double weight = v3_norm(v3_cross(v3_sub(p[1], p[0]), v3_sub(p[2], p[0]))) / (2 * INNER);
+  const laves__vec3 centroid = v3_scale(v3_add(p[0], v3_add(p[1], p[2])), 1.0 / 3);
+  *next++ = sample_at(centroid, weight);
+  for (int i = 0; i < 3; i++) *next++ = sample_at(v3_lerp(centroid, p[i], 0.5), weight);
+  samples->count = (size_t)(next - samples->items);
+}
+
+static laves_result list_boundary_samples(laves_context *context, measuring *m, laves_error *error) {
+  const size_t most = SAMPLES_PER_FACE * m->boundary->count;
+  uint8_t *seen = laves__alloc_zeroed(context, m->mesh->vertex_count, 1);
+  if (!seen || !laves__grow(context, &m->samples->items, &m->samples->capacity, most, sizeof *m->samples->items)) {
+    laves__free(context, seen, m->mesh->vertex_count, 1);
+    return laves__fail_memory(context, error);
+  }
+  for (size_t i = 0; i < m->boundary->count; i++) add_face_samples(m->mesh, m->boundary->faces[i], seen, m->samples);
+  m->samples->boundary_count = m->samples->count;
+  laves__free(context, seen, m->mesh->vertex_count, 1);
+  return LAVES_OK;
+}
+
+/* Without a foot at any reach the value of a true distance serves. */
+static double distance_to_surface(const measuring *m, laves__vec3 local, uint32_t *hint) {
+  laves__vec3 foot, normal;
+  for (double reach = m->reach;; reach *= REACH_GROWTH) {
+    if (reach > m->reach_max) reach = m->reach_max;
+    if (m->oracle->project(m->oracle->self, local, reach, hint, &foot, &normal)) return v3_distance(local, foot);
+    *hint = LAVES__NO_HINT;
+    if (reach >= m->reach_max) break;
+  }
+  if (!m->oracle->is_distance) return NAN;
+  double phi;
+  m->oracle->evaluate(m->oracle->self, 1, &local, &phi, NULL);
+  return fabs(phi);
+}
+
+static void project_block(void *user, size_t begin, size_t end, int worker) {
+  const measuring *m = user;
+  (void)worker;
+  for (size_t i = begin; i < end; i++) {
+    uint32_t hint = LAVES__NO_HINT;
+    laves__sample *sample = &m->samples->items[i];
+    sample->distance = distance_to_surface(m, v3_sub(sample->point, m->oracle->origin), &hint);
+  }
+}
+
+/* ---- samples on the surface ---- */
+
+static void nearest_block(void *user, size_t begin, size_t end, int worker) {
+  const measuring *m = user;
+  (void)worker;
+  for (size_t i = begin; i < end; i++) {
+    laves__sample *sample = &m->samples->items[m->samples->boundary_count + i];
+    sample->distance = laves__boundary_tree_distance(m->tree, v3_sub(sample->point, m->oracle->origin));
+  }
+}
+
+static double boundary_area(const laves__samples *samples) {
+  double area = 0;
+  for (size_t i = 0; i < samples->count; i++) area += samples->items[i].weight;
+  return area;
+}
+
+/* Asks the domain for samples and appends them. */
+static laves_result list_surface_samples(laves_context *context, measuring *m, laves_error *error) {
+  laves__samples *samples = m->samples;
+  double spacing = SURFACE_SPACING * samples->spacing;
+  const double area = m->oracle->area > 0 ? m->oracle->area : 2 * boundary_area(samples);
+  if (!m->oracle->sample || !(spacing > 0) || !isfinite(area)) return LAVES_OK;
+  if (area / (spacing * spacing) > SURFACE_SAMPLES_MAX) spacing = sqrt(area / SURFACE_SAMPLES_MAX);
+  const size_t room = (size_t)(4 * area / (spacing * spacing)) + 4096;
+  laves__vec3 *points = laves__alloc(context, room, sizeof *points);
+  if (!points) return laves__fail_memory(context, error);
+  size_t count = m->oracle->sample(m->oracle->self, spacing, points, room);
+  if (count > room) count = room;
+  laves_result result = LAVES_OK;
+  if (laves__grow(context, &samples->items, &samples->capacity, samples->count + count, sizeof *samples->items)) {
+    for (size_t i = 0; i < count; i++) samples->items[samples->count++] = sample_at(v3_add(points[i], m->oracle->origin), 1);
+  } else {
+    result = laves__fail_memory(context, error);
+  }
+  laves__free(context, points, room, sizeof *points);
+  return result;
+}
+
+/* ---- both ---- */
+
+laves_result laves__measure_distances(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
+                                      const laves_domain *domain, laves__samples *samples, laves_error *error) {
+  laves__box3 box;
+  measuring m = {.mesh = mesh, .boundary = boundary, .oracle = &domain->oracle, .samples = samples};
+  *samples = (laves__samples){.context = context, .spacing = mean_edge(mesh, boundary, &box)};
+  const laves__box3 bounds = domain->oracle.bounds;
+  m.reach = FIRST_REACH * samples->spacing;
+  box = box3_add(box3_add(box, v3_add(bounds.lower, m.oracle->origin)), v3_add(bounds.upper, m.oracle->origin));
+  m.reach_max = box3_diagonal(box);
+
+  laves_result result = list_boundary_samples(context, &m, error);
+  if (result != LAVES_OK) goto clean_up;
+  if (!laves__parallel_for(context, "distance", samples->boundary_count, SAMPLES_PER_BLOCK, project_block, &m)) {
+    result = laves__fail_cancelled(error);
+    goto clean_up;
+  }
+  result = list_surface_samples(context, &m, error);
+  if (result != LAVES_OK) goto clean_up;
+  result = laves__boundary_tree_build(context, mesh, boundary, m.oracle->origin, &m.tree, error);
+  if (result != LAVES_OK) goto clean_up;
+  if (!laves__parallel_for(context, "distance", samples->count - samples->boundary_count, SAMPLES_PER_BLOCK, nearest_block, &m))
+    result = laves__fail_cancelled(error);
+clean_up:
+  laves__boundary_tree_free(m.tree);
+  if (result != LAVES_OK) laves__samples_free(samples);
+  return result;
+}
+
+/* Largest and mean distance of samples [begin, end); NAN when there is none to measure. */
+static void summarise(const laves__samples *samples, size_t begin, size_t end, double *max, double *mean, double place[3]) {
+  double sum = 0, weights = 0;
+  *max = NAN;
+  for (size_t i = begin; i < end; i++) {
+    const laves__sample *s = &samples->items[i];
+    if (!isfinite(s->distance)) continue;
+    sum += s->weight * s->distance;
+    weights += s->weight;
+    if (s->distance <= *max) continue;
+    *max = s->distance;
+    memcpy(place, &s->point, sizeof s->point);
+  }
+  *mean = weights > 0 ? sum / weights : NAN;
+}
+
+laves_result laves__check_distances(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
+                                    const laves_domain *domain, laves_check *check, laves_error *error) {
+  laves__samples samples;
+  const laves_result result = laves__measure_distances(context, mesh, boundary, domain, &samples, error);
+  if (result != LAVES_OK) return result;
+  summarise(&samples, 0, samples.boundary_count, &check->to_surface_max, &check->to_surface_mean, check->to_surface_place);
+  summarise(&samples, samples.boundary_count, samples.count, &check->from_surface_max, &check->from_surface_mean,
+            check->from_surface_place);
+  check->has_distance = true;
+  check->domain_volume = domain->oracle.volume;
+  laves__samples_free(&samples);
+  return LAVES_OK;
+}
