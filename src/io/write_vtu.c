@@ -13,6 +13,7 @@
 
 #include "io/write_mesh.h"
 #include "io/write_text.h"
+#include "io/zlib_memory.h"
 
 enum { CELL_TRIANGLE = 5, CELL_TET = 10 };
 enum { CLASS_TILE = 0, CLASS_LAYER = 1, CLASS_FACE = 2 };
@@ -138,22 +139,6 @@ static void write_raw(laves__output *out, const array *a) {
  * work out. A multiple of every item's size. */
 enum { BLOCK_BYTES = 1 << 18 };
 
-static voidpf zlib_allocate(voidpf user, uInt count, uInt size) {
-  /* zlib does not say the size when freeing, so it is kept in front. */
-  const size_t bytes = (size_t)count * size + 16;
-  char *block = laves__alloc(user, bytes, 1);
-  if (!block) return Z_NULL;
-  memcpy(block, &bytes, sizeof bytes);
-  return block + 16;
-}
-
-static void zlib_free(voidpf user, voidpf address) {
-  char *block = (char *)address - 16;
-  size_t bytes;
-  memcpy(&bytes, block, sizeof bytes);
-  laves__free(user, block, bytes, 1);
-}
-
 typedef struct compression {
   laves_context *context;
   array *array;
@@ -182,7 +167,7 @@ static void compress_block(const compression *c, z_stream *stream, size_t i, cha
 static void compress_range(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const compression *c = user;
-  z_stream stream = {.zalloc = zlib_allocate, .zfree = zlib_free, .opaque = c->context};
+  z_stream stream = {.zalloc = laves__zlib_allocate, .zfree = laves__zlib_free, .opaque = c->context};
   if (deflateInit(&stream, c->level) != Z_OK) return;
   const size_t capacity = deflateBound(&stream, BLOCK_BYTES);
   char *scratch = laves__alloc(c->context, BLOCK_BYTES + capacity, 1);
