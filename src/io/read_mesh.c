@@ -1,0 +1,113 @@
+/* Reads a tetrahedral mesh of any program: finds the format from the content (TetGen's from the name, since its files are
+ * bare numbers), calls the format's reader and makes the mesh. */
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "io/file.h"
+#include "io/mesh_input.h"
+#include "io/scan.h"
+
+typedef laves_result read_fn(laves__mesh_input *input, laves_error *error);
+
+/* The length of the path without TetGen's ending, or 0 when it has none. */
+static size_t tetgen_stem(const char *path) {
+  static const char *const endings[] = {".node", ".ele", ".face"};
+  const size_t length = strlen(path);
+  for (size_t i = 0; i < LAVES__COUNT_OF(endings); i++) {
+    const size_t ending = strlen(endings[i]);
+    if (length > ending && strcasecmp(path + length - ending, endings[i]) == 0) return length - ending;
+  }
+  return 0;
+}
+
+/* Whether the text is among the first bytes, where a file says what it is. */
+static bool begins_with_somewhere(const laves__mesh_input *input, const char *text) {
+  enum { LOOK = 4096 };
+  const size_t available = (size_t)(input->end - input->begin), length = strlen(text);
+  for (size_t i = 0; i < LOOK && i + length <= available; i++)
+    if (memcmp(input->begin + i, text, length) == 0) return true;
+  return false;
+}
+
+static bool is_medit_binary(const laves__mesh_input *input) {
+  static const char little[] = {1, 0, 0, 0}, big[] = {0, 0, 0, 1};
+  if (input->end - input->begin < 8) return false;
+  return memcmp(input->begin, little, 4) == 0 || memcmp(input->begin, big, 4) == 0;
+}
+
+static read_fn *find_reader(const laves__mesh_input *input) {
+  if (is_medit_binary(input)) return laves__read_medit_binary;
+  if (begins_with_somewhere(input, "<VTKFile")) return laves__read_vtu;
+  if (begins_with_somewhere(input, "$MeshFormat")) return laves__read_gmsh;
+  if (begins_with_somewhere(input, "MeshVersionFormatted")) return laves__read_medit_text;
+  return NULL;
+}
+
+/* Opens a file into the input's begin and end; free with close_file(). */
+static laves_result open_file(laves__mesh_input *input, const char *path, laves_error *error) {
+  char *bytes;
+  size_t length;
+  const laves_result result = laves__file_read(input->context, path, &bytes, &length, error);
+  if (result != LAVES_OK) return result;
+  input->name = path;
+  input->begin = bytes;
+  input->end = bytes + length;
+  return LAVES_OK;
+}
+
+static void close_file(laves__mesh_input *input) {
+  laves__free(input->context, (char *)input->begin, (size_t)(input->end - input->begin) + 1, 1);
+  input->begin = input->end = NULL;
+}
+
+/* One file of the three; a missing .face is no fault. */
+static laves_result read_part(laves__mesh_input *input, const char *path, int part, int64_t *base, laves_error *error) {
+  static const char *const endings[] = {"node", "ele", "face"};
+  char name[PATH_MAX];
+  const int length = snprintf(name, sizeof name, "%.*s.%s", (int)tetgen_stem(path), path, endings[part]);
+  if (length >= (int)sizeof name) return laves__fail(error, LAVES_ERROR_INPUT, "the file name is too long");
+  laves_error ignored;
+  laves_result result = open_file(input, name, part == 2 ? &ignored : error);
+  if (result == LAVES_ERROR_INPUT && part == 2) return LAVES_OK;
+  if (result == LAVES_ERROR_MEMORY) return laves__fail_memory(input->context, error);
+  if (result != LAVES_OK) return result;
+  if (part == 0)
+    result = laves__read_tetgen_node(input, base, error);
+  else
+    result = (part == 1 ? laves__read_tetgen_ele : laves__read_tetgen_face)(input, *base, error);
+  close_file(input);
+  input->name = path;
+  return result;
+}
+
+static laves_result read_tetgen(laves__mesh_input *input, const char *path, laves_error *error) {
+  int64_t base = 0;
+  laves_result result = LAVES_OK;
+  for (int part = 0; part < 3 && result == LAVES_OK; part++) result = read_part(input, path, part, &base, error);
+  return result;
+}
+
+static laves_result read_one(laves__mesh_input *input, const char *path, laves_error *error) {
+  laves_result result = open_file(input, path, error);
+  if (result != LAVES_OK) return result;
+  read_fn *read = find_reader(input);
+  if (read)
+    result = read(input, error);
+  else
+    result = laves__mesh_input_fail(
+        input, error, "it is not a tetrahedral mesh of a format that is known (VTU, Gmsh, Medit; TetGen by .node or .ele)");
+  close_file(input);
+  return result;
+}
+
+laves_result laves_mesh_read(laves_context *context, const char *path, laves_mesh **mesh, laves_error *error) {
+  *mesh = NULL;
+  laves__progress_reset(context);
+  laves__mesh_input input = {.context = context, .name = path};
+  laves_result result = tetgen_stem(path) ? read_tetgen(&input, path, error) : read_one(&input, path, error);
+  if (result == LAVES_OK) result = laves__mesh_input_finish(&input, mesh, error);
+  laves__mesh_input_free(&input);
+  return result;
+}
