@@ -185,34 +185,47 @@ static laves_result read_header(ply_file *file) {
 
 /* ---- data ---- */
 
-static uint64_t load_bits(const char *at, size_t size, bool big_endian) {
-  uint64_t bits = 0;
-  for (size_t i = 0; i < size; ++i) {
-    const size_t shift = 8 * (big_endian ? size - 1 - i : i);
-    bits |= (uint64_t)(unsigned char)at[i] << shift;
-  }
-  return bits;
+/* Integers byte by byte, whatever the order of this machine; compilers make one load of each. */
+static uint16_t load16(const unsigned char *b, bool big) { return (uint16_t)(big ? b[0] << 8 | b[1] : b[1] << 8 | b[0]); }
+
+static uint32_t load32(const unsigned char *b, bool big) {
+  return big ? (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3]
+             : (uint32_t)b[3] << 24 | (uint32_t)b[2] << 16 | (uint32_t)b[1] << 8 | b[0];
 }
 
-static double value_of_bits(uint64_t bits, ply_type type) {
-  const uint32_t low = (uint32_t)bits;
-  float single;
+static float load_float(const unsigned char *b, bool big) {
+  const uint32_t bits = load32(b, big);
+  float value;
+  memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+static double load_double(const unsigned char *b, bool big) {
+  const uint64_t bits = (uint64_t)load32(b + (big ? 0 : 4), big) << 32 | load32(b + (big ? 4 : 0), big);
   double value;
+  memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+static double load_value(const char *at, ply_type type, bool big) {
+  const unsigned char *bytes = (const unsigned char *)at;
   switch (type) {
     case INT8:
-      return (int8_t)bits;
+      return (int8_t)*bytes;
+    case UINT8:
+      return *bytes;
     case INT16:
-      return (int16_t)bits;
+      return (int16_t)load16(bytes, big);
+    case UINT16:
+      return load16(bytes, big);
     case INT32:
-      return (int32_t)bits;
+      return (int32_t)load32(bytes, big);
+    case UINT32:
+      return load32(bytes, big);
     case FLOAT32:
-      memcpy(&single, &low, sizeof single);
-      return single;
-    case FLOAT64:
-      memcpy(&value, &bits, sizeof value);
-      return value;
+      return load_float(bytes, big);
     default:
-      return (double)bits;
+      return load_double(bytes, big);
   }
 }
 
@@ -231,7 +244,7 @@ static bool take_value(ply_file *file, ply_type type, double *value) {
     return laves__scan_double(scan, value);
   }
   if (laves__build_left(file->build) < TYPES[type].size) return false;
-  *value = value_of_bits(load_bits(scan->at, TYPES[type].size, file->encoding == BIG_ENDIAN_BINARY), type);
+  *value = load_value(scan->at, type, file->encoding == BIG_ENDIAN_BINARY);
   scan->at += TYPES[type].size;
   return true;
 }

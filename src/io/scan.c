@@ -1,6 +1,6 @@
 /* Words, numbers and lines of a text file in memory.
  *
- * Decimal numbers.  A number is w * 10^e with w an integer. When w has at most 19 digits it fits 64 bits, and
+ * Decimal numbers.  A number is w * 10^e with w an integer. When w is written with at most 19 digits it fits 64 bits, and
  * 10^e = 5^e 2^e with 5^27 < 2^63, so for |e| <= 27 the product w * 5^e, or the quotient w / 5^-e with enough bits in front
  * of it, fits 128 bits. The quotient keeps at least 62 bits, and its lowest bit is set when the division leaves a remainder
  * ("sticky"), so that the one rounding, from 128 bits to 53, sees on which side of a tie the true value lies. Powers of two
@@ -166,22 +166,20 @@ const char *laves__parse_int(const char *at, const char *end, int64_t *value) {
   if (at == end || !is_digit(*at)) {
     return NULL;
   }
-  uint64_t number = 0;
+  int64_t number = 0;
   for (; at < end && is_digit(*at); ++at) {
-    const uint64_t digit = (uint64_t)(*at - '0');
-    if (number > (INT64_MAX - digit) / 10) {
+    if (__builtin_mul_overflow(number, 10, &number) || __builtin_add_overflow(number, *at - '0', &number)) {
       return NULL;
     }
-    number = number * 10 + digit;
   }
-  *value = negative ? -(int64_t)number : (int64_t)number;
+  *value = negative ? -number : number;
   return at;
 }
 
 /* A decimal number taken apart: (-1)^negative * digits * 10^exponent. */
 typedef struct decimal {
-  uint64_t digits;
-  int digit_count; /* significant ones; `digits` holds them all while this is at most MAX_DIGITS */
+  uint64_t digits;    /* modulo 2^64, so true while digit_count is at most MAX_DIGITS */
+  size_t digit_count; /* zeros in front included */
   int64_t exponent;
   bool negative;
 } decimal;
@@ -195,15 +193,13 @@ enum {
 
 /* Takes digits into the number; returns one past them. */
 static const char *take_digits(const char *at, const char *end, decimal *number) {
+  const char *start = at;
+  uint64_t digits = number->digits;
   for (; at < end && is_digit(*at); ++at) {
-    const unsigned digit = (unsigned)(*at - '0');
-    if (number->digit_count < MAX_DIGITS) {
-      number->digits = number->digits * 10 + digit;
-      number->digit_count += number->digits != 0;
-    } else if (number->digit_count < MAX_NUMBER_LENGTH) {
-      ++number->digit_count;
-    }
+    digits = digits * 10 + (uint64_t)(*at - '0');
   }
+  number->digits = digits;
+  number->digit_count += (size_t)(at - start);
   return at;
 }
 
@@ -234,16 +230,13 @@ static const char *take_decimal(const char *at, const char *end, decimal *number
   if (at < end && (*at == '-' || *at == '+')) {
     number->negative = *at++ == '-';
   }
-  const char *whole = at;
   at = take_digits(at, end, number);
-  ptrdiff_t digit_total = at - whole;
   if (at < end && *at == '.') {
     const char *fraction = at + 1;
     at = take_digits(fraction, end, number);
     number->exponent = -(int64_t)(at - fraction);
-    digit_total += at - fraction;
   }
-  return digit_total > 0 ? take_exponent(at, end, number) : NULL;
+  return number->digit_count > 0 ? take_exponent(at, end, number) : NULL;
 }
 
 static uint64_t power_of_five(int exponent) {
@@ -322,7 +315,7 @@ const char *laves__parse_double(const char *at, const char *end, double *value) 
     return NULL;
   }
   double magnitude;
-  if (number.digit_count == 0) {
+  if (number.digit_count <= MAX_DIGITS && number.digits == 0) {
     magnitude = 0;
   } else if (number.digit_count > MAX_DIGITS || number.exponent < -MAX_POWER || number.exponent > MAX_POWER) {
     return decimal_by_library(at, stop, value) ? stop : NULL;
