@@ -85,13 +85,34 @@ laves_result laves__build_tag(laves__surface_build *build, laves__word name, con
   return started ? LAVES_OK : laves__fail_memory(build->context, build->error);
 }
 
+/* Makes a growing array exactly `count` items long, which may be fewer than its capacity. */
+static bool fit(laves_context *context, void *block, size_t *capacity, size_t count, size_t size) {
+  void *old;
+  memcpy(&old, block, sizeof old);
+  void *fitted = laves__realloc(context, old, *capacity, count, size);
+  if (fitted == NULL) return false;
+  memcpy(block, &fitted, sizeof fitted);
+  *capacity = count;
+  return true;
+}
+
+/* Makes points and triangles exactly so many. */
+static laves_result fit_all(laves__surface_build *build, size_t point_count, size_t triangle_count) {
+  laves__surface_input *input = build->input;
+  const bool fitted = fit(build->context, &input->points, &input->point_capacity, point_count, sizeof *input->points) &&
+                      fit(build->context, &input->triangles, &input->triangle_capacity, triangle_count, sizeof *input->triangles);
+  return fitted ? LAVES_OK : laves__fail_memory(build->context, build->error);
+}
+
 laves_result laves__build_reserve(laves__surface_build *build, uint64_t point_count, size_t point_bytes, uint64_t face_count,
                                   size_t face_bytes) {
+  const laves__surface_input *input = build->input;
   const size_t left = laves__build_left(build);
-  const size_t points = point_count < left / point_bytes ? (size_t)point_count : left / point_bytes;
-  const size_t faces = face_count < left / face_bytes ? (size_t)face_count : left / face_bytes;
-  const laves_result result = grow_points(build, build->input->point_count + points);
-  return result != LAVES_OK ? result : grow_triangles(build, build->input->triangle_count + faces);
+  size_t points = input->point_count + (size_t)(point_count < left / point_bytes ? point_count : left / point_bytes);
+  const size_t faces = input->triangle_count + (size_t)(face_count < left / face_bytes ? face_count : left / face_bytes);
+  points = points < UINT32_MAX ? points : UINT32_MAX;  // more are refused when they come
+  return fit_all(build, points > input->point_capacity ? points : input->point_capacity,
+                 faces > input->triangle_capacity ? faces : input->triangle_capacity);
 }
 
 size_t laves__build_left(const laves__surface_build *build) { return (size_t)(build->scan.end - build->scan.at); }
@@ -132,28 +153,23 @@ static laves_result hand_over_tags(laves__surface_build *build) {
   laves__surface_input *input = build->input;
   laves__tag_list *list = &build->tags;
   if (list->count == 0) return LAVES_OK;
-  if (!laves__tag_list_end(build->context, list, input->triangle_count)) goto no_memory;
-  int32_t *tags = laves__realloc(build->context, list->tags, list->tag_capacity, input->triangle_capacity, sizeof *tags);
-  if (tags == NULL) goto no_memory;
-  list->tags = tags;
-  list->tag_capacity = input->triangle_capacity;
-  char **names = laves__realloc(build->context, list->names, list->capacity, list->count, sizeof *names);
-  if (names == NULL) goto no_memory;
-  list->names = names;
-  list->capacity = list->count;
-  input->tags = tags;
-  input->tag_names = names;
+  if (!laves__tag_list_end(build->context, list, input->triangle_count) ||
+      !fit(build->context, &list->tags, &list->tag_capacity, input->triangle_capacity, sizeof *list->tags) ||
+      !fit(build->context, &list->names, &list->capacity, list->count, sizeof *list->names)) {
+    return laves__fail_memory(build->context, build->error);
+  }
+  input->tags = list->tags;
+  input->tag_names = list->names;
   input->tag_count = (int)list->count;
   list->tags = NULL;
   list->names = NULL;
   list->tag_capacity = list->capacity = list->count = 0;
   return LAVES_OK;
-no_memory:
-  return laves__fail_memory(build->context, build->error);
 }
 
 laves_result laves__build_finish(laves__surface_build *build, laves_result result) {
   if (result == LAVES_OK) result = check_all(build);
+  if (result == LAVES_OK) result = fit_all(build, build->input->point_count, build->input->triangle_count);
   if (result == LAVES_OK) result = hand_over_tags(build);
   laves__tag_list_free(build->context, &build->tags);
   if (result != LAVES_OK) laves__surface_input_free(build->context, build->input);

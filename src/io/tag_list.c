@@ -18,7 +18,8 @@ static size_t find_slot(const laves__tag_list *list, const char *name, size_t le
   size_t slot = hash_of(name, length) & (list->slot_count - 1);
   for (; list->slots[slot] >= 0; slot = (slot + 1) & (list->slot_count - 1)) {
     const char *other = list->names[list->slots[slot]];
-    if (strlen(other) == length && memcmp(other, name, length) == 0) break;
+    // Looks at no more than `length` bytes, however long the other name is.
+    if (strncmp(other, name, length) == 0 && other[length] == 0) break;
   }
   return slot;
 }
