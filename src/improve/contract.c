@@ -9,8 +9,9 @@
 #include "improve/smooth.h"
 
 enum { NEIGHBOURS_MAX = 96 };
-static const double deviation_max = 0.10; /* sizes: faces after the contraction may be this far from the surface */
-static const double alignment_min = 0.8;  /* cosine between face normal and surface normal */
+/* Faces after a contraction may lie this far from the surface, in sizes, and this much across it (cosine of the angle
+ * between the normals), or as much as those before. */
+static const double deviation_max = 0.10, alignment_min = 0.8;
 
 typedef struct ring {
   int32_t tet[NEIGHBOURS_MAX]; /* that hold both ends */
@@ -167,14 +168,23 @@ static double worst_touched(const laves__layer *layer, const laves__journal *j) 
   return worst;
 }
 
-static bool is_near_surface(const laves__frame *frame, laves__vec3 p, laves__vec3 face_normal, uint32_t hint) {
+/* How the boundary faces around a vertex lie to the surface. */
+typedef struct fit {
+  double deviation; /* largest distance of centroids and edge midpoints, sizes */
+  double alignment; /* least cosine between a face's normal and the surface's */
+} fit;
+
+static void fit_point(const laves__frame *frame, laves__vec3 p, laves__vec3 face_normal, uint32_t hint, fit *f) {
   laves__vec3 foot, normal;
-  return laves__frame_project(frame, p, 4 * deviation_max, &hint, &foot, &normal) && v3_distance(p, foot) <= deviation_max &&
-         v3_dot(face_normal, normal) >= alignment_min;
+  if (!laves__frame_project(frame, p, 1, &hint, &foot, &normal)) {
+    *f = (fit){1, -1};
+    return;
+  }
+  f->deviation = fmax(f->deviation, v3_distance(p, foot));
+  f->alignment = fmin(f->alignment, v3_dot(face_normal, normal));
 }
 
-/* Whether the boundary faces around a lie near the surface and along it. */
-static bool fits_surface(const laves__frame *frame, const laves__layer *layer, int32_t a) {
+static void fit_star(const laves__frame *frame, const laves__layer *layer, int32_t a, fit *f) {
   const laves__star *star = &layer->star[a];
   for (int i = 0; i < star->count; i++) {
     const int32_t t = star->tet[i];
@@ -183,13 +193,10 @@ static bool fits_surface(const laves__frame *frame, const laves__layer *layer, i
       laves__vec3 p[3];
       for (int v = 0; v < 3; v++) p[v] = layer->position[layer->tet[t][laves__tet_face[k][v]]];
       const laves__vec3 normal = v3_unit(v3_cross(v3_sub(p[1], p[0]), v3_sub(p[2], p[0])));
-      const laves__vec3 centroid = v3_scale(v3_add(v3_add(p[0], p[1]), p[2]), 1.0 / 3);
-      if (!is_near_surface(frame, centroid, normal, layer->hint[a])) return false;
-      for (int v = 0; v < 3; v++)
-        if (!is_near_surface(frame, v3_lerp(p[v], p[(v + 1) % 3], 0.5), normal, layer->hint[a])) return false;
+      fit_point(frame, v3_scale(v3_add(v3_add(p[0], p[1]), p[2]), 1.0 / 3), normal, layer->hint[a], f);
+      for (int v = 0; v < 3; v++) fit_point(frame, v3_lerp(p[v], p[(v + 1) % 3], 0.5), normal, layer->hint[a], f);
     }
   }
-  return true;
 }
 
 static bool contract(const laves__frame *frame, const laves__measure *m, double target, laves__layer *layer, int32_t a, int32_t b,
@@ -199,11 +206,19 @@ static bool contract(const laves__frame *frame, const laves__measure *m, double 
   ring r;
   if (!find_ring(layer, a, b, &r) || !keeps_topology(layer, a, b, &r)) return false;
   const double before = fmin(laves__star_quality(layer, a), laves__star_quality(layer, b));
+  fit old_fit = {deviation_max, alignment_min};
+  if (layer->depth[b] == 0) fit_star(frame, layer, b, &old_fit);
+  if (layer->depth[a] == 0) fit_star(frame, layer, a, &old_fit);
   laves__journal_clear(j);
   bool good = merge(layer, a, b, &r, j) && layer->star[a].count > 0 && measure_star(m, layer, a);
   if (good) {
     smooth_around(frame, m, target, layer, a, j);
-    good = worst_touched(layer, j) > before && (layer->depth[a] != 0 || fits_surface(frame, layer, a));
+    good = worst_touched(layer, j) > before;
+  }
+  if (good && layer->depth[a] == 0) {
+    fit new_fit = {0, 1};
+    fit_star(frame, layer, a, &new_fit);
+    good = new_fit.deviation <= old_fit.deviation && new_fit.alignment >= old_fit.alignment;
   }
   if (!good) laves__journal_undo(j, layer);
   laves__journal_clear(j);

@@ -21,6 +21,7 @@ enum {
   TERMS_MAX = 640,    /* functions in a bundle; more are left out (a star of 50 tets has 650, and few are active) */
   STEPS_MAX = 10,     /* accepted steps for one call */
   TRIES_MAX = 6,      /* shrinks of tau for one step */
+  WORKING_MAX = 24,    /* functions that share the weight; four suffice in theory */
   EXCHANGES_MAX = 60, /* of weight, for one dual problem */
 };
 static const double active_range = 0.6;   /* functions this far above the least take part */
@@ -32,8 +33,10 @@ static const double accept_share = 0.1, good_share = 0.5, exact_enough = 0.02;
 
 typedef struct bundle {
   int count;
-  double value[TERMS_MAX], model[TERMS_MAX], weight[TERMS_MAX];
+  double value[TERMS_MAX];
   laves__vec3 gradient[TERMS_MAX];
+  int working_count, working[WORKING_MAX]; /* the functions that may carry weight */
+  double weight[WORKING_MAX], model[WORKING_MAX];
 } bundle;
 
 static void add_term(bundle *b, double value, laves__vec3 gradient) {
@@ -96,38 +99,70 @@ static void fill_bundle(bundle *b, const laves__measure *m, const laves__layer *
     laves__layer_points(layer, star->tet[i], p);
     add_tet(b, m, p, laves__layer_corner(layer, star->tet[i], vertex), least + active_range);
   }
-  if (layer->depth[vertex] != 0) return;
-  const laves__vec3 n = layer->normal[vertex];
-  for (int k = 0; k < b->count; k++) b->gradient[k] = v3_mad(b->gradient[k], n, -v3_dot(b->gradient[k], n));
+  if (layer->depth[vertex] == 0) {
+    const laves__vec3 n = layer->normal[vertex];
+    for (int k = 0; k < b->count; k++) b->gradient[k] = v3_mad(b->gradient[k], n, -v3_dot(b->gradient[k], n));
+  }
+  b->working_count = 1;
+  b->weight[0] = 1;
+  b->working[0] = 0;
+  for (int k = 1; k < b->count; k++)
+    if (b->value[k] < b->value[b->working[0]]) b->working[0] = k;
 }
 
-/* Solves the dual for one tau; returns the step and the gain that the model foretells. */
-static laves__vec3 solve_bundle(bundle *b, double tau, double *gain) {
-  int best = 0;
-  for (int k = 0; k < b->count; k++) {
-    b->weight[k] = 0;
-    if (b->value[k] < b->value[best]) best = k;
-  }
-  const double least = b->value[best];
-  b->weight[best] = 1;
-  laves__vec3 sum = b->gradient[best];
+/* Moves weight among the working set, from the function with the largest model to the one with the least, until they are
+ * level; returns the least model. */
+static double level_working_set(bundle *b, double tau, double least, laves__vec3 *sum) {
   for (int exchange = 0;; exchange++) {
     int low = 0, high = -1;
-    for (int k = 0; k < b->count; k++) {
-      b->model[k] = b->value[k] + tau * v3_dot(b->gradient[k], sum);
-      if (b->model[k] < b->model[low]) low = k;
-      if (b->weight[k] > 0 && (high < 0 || b->model[k] > b->model[high])) high = k;
+    for (int i = 0; i < b->working_count; i++) {
+      const int k = b->working[i];
+      b->model[i] = b->value[k] + tau * v3_dot(b->gradient[k], *sum);
+      if (b->model[i] < b->model[low]) low = i;
+      if (b->weight[i] > 0 && (high < 0 || b->model[i] > b->model[high])) high = i;
     }
-    *gain = b->model[low] - least;
     const double difference = b->model[high] - b->model[low];
-    if (difference <= exact_enough * fabs(*gain) || exchange == EXCHANGES_MAX) break;
-    const laves__vec3 across = v3_sub(b->gradient[low], b->gradient[high]);
+    if (difference <= exact_enough * fabs(b->model[low] - least) || exchange == EXCHANGES_MAX) return b->model[low];
+    const laves__vec3 across = v3_sub(b->gradient[b->working[low]], b->gradient[b->working[high]]);
     const double curvature = tau * v3_norm2(across);
     double move = b->weight[high];
     if (curvature * move > difference) move = difference / curvature;
     b->weight[high] -= move;
     b->weight[low] += move;
-    sum = v3_mad(sum, across, move);
+    *sum = v3_mad(*sum, across, move);
+  }
+}
+
+/* The function with the least model for a step of tau * sum. */
+static int least_model(const bundle *b, double tau, laves__vec3 sum, double *model) {
+  int low = 0;
+  *model = HUGE_VAL;
+  for (int k = 0; k < b->count; k++) {
+    const double value = b->value[k] + tau * v3_dot(b->gradient[k], sum);
+    if (value < *model) {
+      *model = value;
+      low = k;
+    }
+  }
+  return low;
+}
+
+/* Solves the dual for one tau; returns the step and the gain that the model foretells. Only a handful of functions carry
+ * weight, so the problem is solved on a working set that grows by the function which the last step would make the worst. */
+static laves__vec3 solve_bundle(bundle *b, double tau, double least, double *gain) {
+  laves__vec3 sum = {0, 0, 0};
+  for (int i = 0; i < b->working_count; i++) sum = v3_mad(sum, b->gradient[b->working[i]], b->weight[i]);
+  for (;;) {
+    const double level = level_working_set(b, tau, least, &sum);
+    double model;
+    const int low = least_model(b, tau, sum, &model);
+    *gain = model - least;
+    if (model >= level - exact_enough * fabs(level - least) || b->working_count == WORKING_MAX) break;
+    bool known = false;
+    for (int i = 0; i < b->working_count; i++) known |= b->working[i] == low;
+    if (known) break;
+    b->weight[b->working_count] = 0;
+    b->working[b->working_count++] = low;
   }
   laves__vec3 step = v3_scale(sum, tau);
   const double length = v3_norm(step);
@@ -184,7 +219,7 @@ bool laves__smooth_vertex(const laves__frame *frame, const laves__measure *m, do
     bool accepted = false;
     for (int attempt = 0; attempt < TRIES_MAX && !accepted; attempt++) {
       double gain;
-      laves__vec3 place = v3_add(layer->position[vertex], solve_bundle(&b, tau, &gain)), normal = {0, 0, 0};
+      laves__vec3 place = v3_add(layer->position[vertex], solve_bundle(&b, tau, least, &gain)), normal = {0, 0, 0};
       if (gain < least_gain) return moved;
       uint32_t hint = layer->hint[vertex];
       bool there = true;
