@@ -231,7 +231,7 @@ static void class_colour(bool boundary, int32_t region, float out[3]) {
   static const uint32_t inside[] = {0xffd070, 0x9fc66d, 0xe58f7b, 0xb79ad6, 0x6fc3c0, 0xd9b48f};
   enum { inside_count = sizeof inside / sizeof inside[0] };
   uint32_t row = (uint32_t)(region - 1) % inside_count;
-  linear_colour(boundary ? 0x93bde3 : inside[row], out);
+  linear_colour(boundary ? 0x8fb8dc : inside[row], out);
 }
 
 static void fill_face(const laves_mesh *mesh, const face_entry *entry, scene_colour colour, scene_face *out) {
