@@ -1,2 +1,2 @@
--- A gyroid sheet within a ball: no straight line anywhere, and far too many holes to draw by hand.
-return gyroid{period = 0.9, thickness = 0.2} & sphere(1)
+-- One of the two labyrinths of a gyroid, within a ball, its rims rounded: hardly a flat spot or a straight line anywhere.
+return smooth_intersection(gyroid{period = 0.9, level = -0.15}, sphere(1), 0.2)
