@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The list of source files in src/README.md, made from the first sentence of each file's comment.
 
-    tools/source-list            exits with 1 and says what differs when the list is not up to date
-    tools/source-list --write    brings it up to date
+    tools/source_list.py            exits with 1 and says what differs when the list is not up to date
+    tools/source_list.py --write    brings it up to date
 """
 import pathlib
 import re
@@ -10,7 +10,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 README = ROOT / "src" / "README.md"
-BEGIN, END = "<!-- list: tools/source-list --write -->\n", "<!-- end of list -->\n"
+BEGIN, END = "<!-- list: tools/source_list.py --write -->\n", "<!-- end of list -->\n"
 
 # A sentence that is longer, in characters, ends at its colon.
 LONGEST = 120
@@ -35,7 +35,7 @@ def first_sentence(path):
     """The first sentence of the comment that a file starts with."""
     match = re.match(r"\s*/\*(.*?)\*/|\s*((?://.*\n)+)", path.read_text(), re.S)
     if not match:
-        sys.exit(f"source-list: {path.relative_to(ROOT)} does not start with a comment that says what it is")
+        sys.exit(f"source_list: {path.relative_to(ROOT)} does not start with a comment that says what it is")
     text = re.sub(r"\n\s*(?:\*|//+) ?", "\n", match.group(1) or match.group(2)).strip().lstrip("/ ")
     paragraph = " ".join(text.split("\n\n")[0].split())
     sentence = re.match(r".*?(?:[.;](?=\s|$)|$)", paragraph).group(0)
@@ -50,7 +50,7 @@ def source_list():
     folders = {str(p.parent.relative_to(ROOT / "src")).replace(".", "", 1) for p in sources}
     unknown = folders - set(FOLDERS)
     if unknown:
-        sys.exit(f"source-list: say in tools/source-list what the folder {unknown.pop()} is for")
+        sys.exit(f"source_list: say in tools/source_list.py what the folder {unknown.pop()} is for")
     out = []
     for folder, purpose in FOLDERS.items():
         files = [p for p in sources if p.parent == ROOT / "src" / folder]
@@ -72,7 +72,7 @@ def main():
         README.write_text(wanted)
     elif text != wanted:
         missing = sorted(set(wanted.splitlines()) ^ set(text.splitlines()))
-        sys.exit("source-list: src/README.md is not up to date; run tools/source-list --write\n" + "\n".join(missing))
+        sys.exit("source_list: src/README.md is not up to date; run tools/source_list.py --write\n" + "\n".join(missing))
 
 
 main()

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes demo/knot.ply: a tube along a (p, q) torus knot, as a closed triangle surface.
 
-    tools/make-knot > demo/knot.ply
+    tools/make_knot.py > demo/knot.ply
 
 The tube's cross sections are turned so that they twist as little as the closed curve lets them (parallel transport, with what
 is left over spread evenly), and the triangles are near to equilateral.
@@ -80,7 +80,7 @@ def main():
                 faces += [(corners[0], corners[2], corners[1]), (corners[0], corners[3], corners[2])]
             else:
                 faces += [(corners[0], corners[3], corners[1]), (corners[1], corners[3], corners[2])]
-    print("ply\nformat ascii 1.0\ncomment made by tools/make-knot")
+    print("ply\nformat ascii 1.0\ncomment made by tools/make_knot.py")
     print(f"element vertex {len(points)}\nproperty double x\nproperty double y\nproperty double z")
     print(f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header")
     for point in points:

@@ -1,0 +1,20 @@
+# The tables in the tree are what their generators make, and the list of sources is up to date.
+find_package(Qhull CONFIG)
+if(Qhull_FOUND)
+  add_executable(make_tiling ${PROJECT_SOURCE_DIR}/tools/make_tiling.c)
+  target_compile_options(make_tiling PRIVATE -w) # Qhull's header warns
+  target_link_libraries(make_tiling PRIVATE Qhull::qhull_r m)
+  add_test(NAME tools/tiling COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/tools/same_output ${PROJECT_SOURCE_DIR}/src/background/c15_table.c
+           $<TARGET_FILE:make_tiling>)
+endif()
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+add_test(NAME tools/knot COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/tools/same_output ${PROJECT_SOURCE_DIR}/demo/knot.ply
+         ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/make_knot.py)
+add_test(NAME tools/pow10_table COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/tools/same_output ${PROJECT_SOURCE_DIR}/src/io/pow10_table.c
+         ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/make_pow10_table.py)
+get_property(tests DIRECTORY PROPERTY TESTS)
+foreach(test ${tests})
+  if(test MATCHES "^tools/")
+    set_tests_properties(${test} PROPERTIES LABELS tools)
+  endif()
+endforeach()
