@@ -9,6 +9,10 @@
 #include "improve/smooth.h"
 
 enum { NEIGHBOURS_MAX = 96 };
+/* A merge that leaves a quality below this share of the old worst is not worth smoothing. */
+static const double hopeless = 0.25;
+/* Nor one whose own smoothing does not come this near to the old worst. */
+static const double promising = 0.8;
 /* Faces after a contraction may lie this far from the surface, in sizes, and this much across it (cosine of the angle
  * between the normals), or as much as those before. */
 static const double deviation_max = 0.10, alignment_min = 0.8;
@@ -136,25 +140,29 @@ static bool merge(laves__layer *layer, int32_t a, int32_t b, const ring *r, lave
   return true;
 }
 
-/* Qualities around a; false when one is not positive. */
-static bool measure_star(const laves__measure *m, laves__layer *layer, int32_t a) {
+/* Qualities around a; false when one is at or below `limit`. */
+static bool measure_star(const laves__measure *m, laves__layer *layer, int32_t a, double limit) {
   const laves__star *star = &layer->star[a];
   for (int i = 0; i < star->count; i++) {
     layer->quality[star->tet[i]] = laves__layer_quality(m, layer, star->tet[i]);
-    if (!(layer->quality[star->tet[i]] > LAVES__FLAT)) return false;
+    if (!(layer->quality[star->tet[i]] > limit)) return false;
   }
   return true;
 }
 
-/* Smooths a, then the other vertices of tets around it that are still bad, then a again. */
+/* Smooths a, then the other vertices of tets around it that are still bad (each once), then a again. */
 static void smooth_around(const laves__frame *frame, const laves__measure *m, double target, laves__layer *layer, int32_t a,
                           laves__journal *j) {
-  laves__smooth_vertex(frame, m, target, layer, a, j);
+  int32_t done[NEIGHBOURS_MAX];
+  int done_count = 0;
   for (int i = 0; i < layer->star[a].count; i++) {
     const int32_t t = layer->star[a].tet[i];
-    for (int k = 0; k < 4 && layer->quality[t] < target; k++)
-      if (layer->tet[t][k] != a && laves__layer_moves(layer, layer->tet[t][k]))
-        laves__smooth_vertex(frame, m, target, layer, layer->tet[t][k], j);
+    for (int k = 0; k < 4 && layer->quality[t] < target; k++) {
+      const int32_t v = layer->tet[t][k];
+      if (v == a || !laves__layer_moves(layer, v) || done_count == NEIGHBOURS_MAX || holds(done, done_count, v)) continue;
+      done[done_count++] = v;
+      laves__smooth_vertex(frame, m, target, layer, v, j);
+    }
   }
   laves__smooth_vertex(frame, m, target, layer, a, j);
 }
@@ -200,7 +208,7 @@ static void fit_star(const laves__frame *frame, const laves__layer *layer, int32
 }
 
 static bool contract(const laves__frame *frame, const laves__measure *m, double target, laves__layer *layer, int32_t a, int32_t b,
-                     laves__journal *j) {
+                     int rounds, laves__journal *j) {
   if (!laves__layer_moves(layer, a) || !laves__layer_moves(layer, b)) return false;
   if (layer->depth[b] == 0 && layer->depth[a] != 0) return false;
   ring r;
@@ -210,9 +218,14 @@ static bool contract(const laves__frame *frame, const laves__measure *m, double 
   if (layer->depth[b] == 0) fit_star(frame, layer, b, &old_fit);
   if (layer->depth[a] == 0) fit_star(frame, layer, a, &old_fit);
   laves__journal_clear(j);
-  bool good = merge(layer, a, b, &r, j) && layer->star[a].count > 0 && measure_star(m, layer, a);
+  bool good =
+      merge(layer, a, b, &r, j) && layer->star[a].count > 0 && measure_star(m, layer, a, fmax(LAVES__FLAT, hopeless * before));
   if (good) {
-    smooth_around(frame, m, target, layer, a, j);
+    laves__smooth_vertex(frame, m, target, layer, a, j);
+    good = laves__star_quality(layer, a) > promising * before;
+  }
+  if (good) {
+    for (int round = 0; round < rounds; round++) smooth_around(frame, m, target, layer, a, j);
     good = worst_touched(layer, j) > before;
   }
   if (good && layer->depth[a] == 0) {
@@ -226,7 +239,7 @@ static bool contract(const laves__frame *frame, const laves__measure *m, double 
 }
 
 bool laves__contract_tet(const laves__frame *frame, const laves__measure *m, double target, laves__layer *layer, int32_t tet,
-                         laves__journal *journal) {
+                         int rounds, laves__journal *journal) {
   int order[6];
   double length[6];
   for (int e = 0; e < 6; e++) {
@@ -240,7 +253,7 @@ bool laves__contract_tet(const laves__frame *frame, const laves__measure *m, dou
     for (int direction = 0; direction < 2; direction++) {
       const int32_t a = layer->tet[tet][laves__tet_edge[order[e]][direction]];
       const int32_t b = layer->tet[tet][laves__tet_edge[order[e]][1 - direction]];
-      if (contract(frame, m, target, layer, a, b, journal)) return true;
+      if (contract(frame, m, target, layer, a, b, rounds, journal)) return true;
     }
   return false;
 }

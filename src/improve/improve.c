@@ -5,17 +5,19 @@
  * time. What an operation reads and changes lies within about six sizes of its tet, and blocks of one colour are fifteen
  * apart, so they can't meet: the result is the same for any number of threads.
  *
- * First passes only smooth; when that no longer helps, contraction joins in. */
+ * First passes only smooth; when that no longer helps, contraction joins in; the few that are still clearly outside are
+ * treated once more with more smoothing around each contraction. */
 #include <stdlib.h>
 
 #include "improve/contract.h"
 #include "improve/relax.h"
 #include "improve/smooth.h"
 
-enum { SWEEPS = 2, SMOOTH_PASSES = 5, CONTRACT_PASSES = 12 };
-static const double block_side = 15;    /* sizes; see above */
-static const double worthwhile = 0.02;  /* share of bad tets that a pass must cure to be followed by its like */
-static const double settle_floor = 0.2; /* quality that bringing a vertex back to the surface may cost: about 18 degrees */
+enum { SWEEPS = 2, SMOOTH_PASSES = 5, CONTRACT_PASSES = 12, THOROUGH_ROUNDS = 3 };
+static const double block_side = 15;       /* sizes; see above */
+static const double worthwhile = 0.02;     /* share of bad tets that a pass must cure to be followed by its like */
+static const double thorough_below = 0.96; /* quality below which the few that remain get more patience */
+static const double settle_floor = 0.2;    /* quality that bringing a vertex back to the surface may cost: about 18 degrees */
 
 laves__measure laves__measure_of(const laves__window *w) {
   static const double radians = 3.14159265358979323846 / 180;
@@ -41,7 +43,9 @@ typedef struct work {
   size_t count, capacity;
   size_t *block; /* first item of each block, and the end */
   size_t block_count, block_capacity;
-  bool contract;
+  double *given_up; /* [tet_count] surroundings in which the last full treatment failed */
+  double admit;     /* tets below this quality are worked on */
+  int rounds;       /* of smoothing around a contraction; 0: smoothing only */
 } work;
 
 static void measure_all(void *user, size_t begin, size_t end, int worker) {
@@ -51,7 +55,7 @@ static void measure_all(void *user, size_t begin, size_t end, int worker) {
     if (w->layer->tet[t][0] >= 0) w->layer->quality[t] = laves__layer_quality(&w->measure, w->layer, (int32_t)t);
 }
 
-static bool is_bad(const work *w, int32_t t) { return w->layer->tet[t][0] >= 0 && w->layer->quality[t] < w->target; }
+static bool is_bad(const work *w, int32_t t) { return w->layer->tet[t][0] >= 0 && w->layer->quality[t] < w->admit; }
 
 static patient admit(const laves__layer *layer, int32_t tet) {
   laves__vec3 p[4];
@@ -94,11 +98,25 @@ static bool admit_all(work *w) {
   return true;
 }
 
+/* A number that changes when any tet around a tet does. */
+static double surroundings(const laves__layer *layer, int32_t t) {
+  double sum = 0;
+  for (int k = 0; k < 4; k++) {
+    const laves__star *star = &layer->star[layer->tet[t][k]];
+    for (int i = 0; i < star->count; i++) sum += layer->quality[star->tet[i]];
+  }
+  return sum;
+}
+
+/* A tet that withstood everything is left alone until something around it changes. */
 static void mend(work *w, int32_t t, laves__journal *journal) {
+  if (surroundings(w->layer, t) == w->given_up[t]) return;
   for (int k = 0; k < 4 && is_bad(w, t); k++)
     if (laves__layer_moves(w->layer, w->layer->tet[t][k]))
       laves__smooth_vertex(w->frame, &w->measure, w->target, w->layer, w->layer->tet[t][k], NULL);
-  if (w->contract && is_bad(w, t)) laves__contract_tet(w->frame, &w->measure, w->target, w->layer, t, journal);
+  if (w->rounds == 0 || !is_bad(w, t)) return;
+  if (!laves__contract_tet(w->frame, &w->measure, w->target, w->layer, t, w->rounds, journal))
+    w->given_up[t] = surroundings(w->layer, t);
 }
 
 typedef struct colour_range {
@@ -154,20 +172,31 @@ static void settle_all(work *w) {
 
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {
   laves_context *context = layer->context;
-  work w = {.frame = frame, .measure = laves__measure_of(window), .target = 1, .layer = layer};
+  work w = {.frame = frame, .measure = laves__measure_of(window), .target = 1, .admit = 1, .layer = layer};
   const int workers = laves__workers(context);
   laves_result result = LAVES_OK;
   w.journal = laves__alloc_zeroed(context, (size_t)workers, sizeof *w.journal);
-  if (!w.journal) return laves__fail_memory(context, error);
+  w.given_up = laves__alloc(context, layer->tet_count, sizeof *w.given_up);
+  if (!w.journal || !w.given_up) {
+    result = laves__fail_memory(context, error);
+    goto cleanup;
+  }
+  for (size_t t = 0; t < layer->tet_count; t++) w.given_up[t] = HUGE_VAL;
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
   if (!laves__parallel_for(context, "improve", layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
   if (result == LAVES_OK) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
   if (result == LAVES_OK) result = run_passes(&w, SMOOTH_PASSES, 1, error);
   if (result == LAVES_OK) settle_all(&w);
-  w.contract = true;
+  w.rounds = 1;
+  if (result == LAVES_OK) result = run_passes(&w, CONTRACT_PASSES, 2, error);
+  w.rounds = THOROUGH_ROUNDS;
+  w.admit = thorough_below;
+  for (size_t t = 0; t < layer->tet_count; t++) w.given_up[t] = HUGE_VAL;
   if (result == LAVES_OK) result = run_passes(&w, CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) settle_all(&w);
-  for (int i = 0; i < workers; i++) laves__journal_free(&w.journal[i]);
+cleanup:
+  for (int i = 0; w.journal && i < workers; i++) laves__journal_free(&w.journal[i]);
+  laves__free(context, w.given_up, layer->tet_count, sizeof *w.given_up);
   laves__free(context, w.journal, (size_t)workers, sizeof *w.journal);
   laves__free(context, w.item, w.capacity, sizeof *w.item);
   laves__free(context, w.block, w.block_capacity, sizeof *w.block);
