@@ -44,28 +44,28 @@ static void measure(const char *name, const laves_domain *domain, double build_s
   const size_t cell_count = find_cells(o, width, cells), count = cell_count * CELL_POINTS;
   uint64_t state = 2;
   for (size_t i = 0; i < count; i++) points[i] = in_cube(&state, cells[i / CELL_POINTS], width / 2);
-  double t = laves__wall_seconds();
+  double t = laves__cpu_seconds();
   for (size_t i = 0; i < count; i++) o->evaluate(o->self, 1, &points[i], &phi[i], NULL);
-  cold = laves__wall_seconds() - t;
-  t = laves__wall_seconds();
+  cold = laves__cpu_seconds() - t;
+  t = laves__cpu_seconds();
   for (size_t i = 0; i < cell_count; i++)
     o->evaluate(o->self, CELL_POINTS, points + i * CELL_POINTS, phi + i * CELL_POINTS, hints + i * CELL_POINTS);
-  batch = laves__wall_seconds() - t;
+  batch = laves__cpu_seconds() - t;
   laves__vec3 foot, normal;
-  t = laves__wall_seconds();
+  t = laves__cpu_seconds();
   for (size_t i = 0; i < count; i++) {
     uint32_t hint = LAVES__NO_HINT;
     o->project(o->self, points[i], INFINITY, &hint, &foot, &normal);
   }
-  project_cold = laves__wall_seconds() - t;
+  project_cold = laves__cpu_seconds() - t;
   /* Smoothing: a point near the surface, moved by a little since its hint was found. */
   for (size_t i = 0; i < count; i++) {
     if (!o->project(o->self, points[i], INFINITY, &hints[i], &foot, &normal)) continue;
     points[i] = in_cube(&state, foot, width / 20);
   }
-  t = laves__wall_seconds();
+  t = laves__cpu_seconds();
   for (size_t i = 0; i < count; i++) o->project(o->self, points[i], INFINITY, &hints[i], &foot, &normal);
-  project_hint = laves__wall_seconds() - t;
+  project_hint = laves__cpu_seconds() - t;
   const double ns = 1e9 / (double)(count ? count : 1);
   printf("%-28s %8zu faces  build %7.1f ms  evaluate %6.0f cold %6.0f cells  project %6.0f cold %6.0f hinted (ns)\n", name,
          domain->info.triangle_count, 1e3 * build_seconds, ns * cold, ns * batch, ns * project_cold, ns * project_hint);
@@ -81,12 +81,12 @@ int main(int argc, char **argv) {
   for (int i = 1; i < argc; i++) {
     laves_domain *domain;
     laves_error error;
-    const double start = laves__wall_seconds();
+    const double start = laves__cpu_seconds();
     if (laves_domain_from_file(context, argv[i], &domain, &error) != LAVES_OK) {
       printf("%-28s %s\n", argv[i], error.text);
       continue;
     }
-    const double seconds = laves__wall_seconds() - start;
+    const double seconds = laves__cpu_seconds() - start;
     const char *name = argv[i];
     for (const char *c = name; *c; c++)
       if (*c == '/') name = c + 1;
