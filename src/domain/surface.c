@@ -2,7 +2,7 @@
  *
  * In: triangles as read, which are consumed.  Out: a domain: oracle, facts, tags.
  *
- *   weld -> tree -> topology -> direction -> normals -> oracle
+ *   weld -> tree -> topology -> direction -> crossings -> walls -> normals -> oracle
  *
  * Local coordinates are input minus origin. The origin is the box's centre on those axes where the centre lies further out
  * than the box is wide, where the subtraction is exact; elsewhere zero, where there is nothing to subtract. */
@@ -81,42 +81,155 @@ static bool reorder_points(laves__surface *s) {
   return done;
 }
 
-/* (Re)builds the tree and brings everything into its order. */
-static bool build_tree(laves__surface *s) {
+/* Builds the tree and brings everything into its order, `slots` (NULL: none) with it. */
+static bool build_tree(laves__surface *s, uint32_t *slots) {
   const size_t count = s->face_count;
-  laves__bvh_free(s->context, &s->bvh);
   uint32_t *order = laves__alloc(s->context, count, sizeof *order);
   const bool done = order && laves__bvh_build(s->context, s->points, (const uint32_t(*)[3])s->faces, count, order, &s->bvh) &&
                     reorder(s, order) && reorder_points(s);
+  for (size_t i = 0; done && slots && i < count; i++) order[i] = slots[order[i]];
+  if (done && slots) memcpy(slots, order, count * sizeof *slots);
   laves__free(s->context, order, count, sizeof *order);
   return done;
 }
 
-/* Turns every face over, and the triangles of the tree with them. */
-static void turn_all(laves__surface *s) {
-  for (size_t f = 0; f < s->face_count; f++) {
-    const uint32_t swap = s->faces[f][1];
-    s->faces[f][1] = s->faces[f][2];
-    s->faces[f][2] = swap;
-    laves__triangle *t = &s->bvh.triangles[f];
-    *t = (laves__triangle){t->a, t->c, t->b, t->dual_c, t->dual_b};
+/* Turns a face over, and the triangle of the tree with it. */
+static void turn_face(laves__surface *s, uint32_t f) {
+  const uint32_t swap = s->faces[f][1];
+  s->faces[f][1] = s->faces[f][2];
+  s->faces[f][2] = swap;
+  laves__triangle *t = &s->bvh.triangles[f];
+  *t = (laves__triangle){t->a, t->c, t->b, t->dual_c, t->dual_b};
+}
+
+/* Topology again after faces were turned or left out; the facts in info are about the input and stay. */
+static bool renew_topology(laves__surface *s, const laves_domain_info *info) {
+  laves_domain_info scratch = *info;
+  return laves__surface_topology(s, &scratch);
+}
+
+static bool any_doubt(const laves__surface *s) {
+  for (size_t h = 0; h < 3 * s->face_count; h++)
+    if (s->across[h] == LAVES__NONE) return true;
+  for (size_t p = 0; p < s->point_count; p++)
+    if (s->doubtful_points[p]) return true;
+  return false;
+}
+
+static void mark_partial(laves__surface *s, const laves__crossings *c) {
+  for (size_t i = 0; i < c->count; i++)
+    for (int k = 0; k < 2; k++) s->face_flags[c->pairs[i][k]] = LAVES__PARTIAL;
+}
+
+static void mark_doubtful(laves__surface *s) {
+  for (size_t f = 0; f < s->face_count; f++)
+    for (int i = 0; i < 3 && (s->face_flags[f] & LAVES__PARTIAL); i++) s->doubtful_points[s->faces[f][i]] = true;
+}
+
+/* Leaves the faces without keep out of the distance; the whole stays behind the winding number. */
+static bool leave_out(laves__surface *s, const bool *keep, laves__crossings *c) {
+  const size_t all_count = s->face_count;
+  bool done = false;
+  uint32_t *number = laves__alloc(s->context, all_count, sizeof *number);
+  uint8_t *flags = laves__alloc_zeroed(s->context, s->face_capacity, sizeof *flags);
+  s->winding_slot = laves__alloc(s->context, s->face_capacity, sizeof *s->winding_slot);
+  if (!number || !flags || !s->winding_slot) goto clean_up;
+  s->face_count = 0;
+  for (uint32_t f = 0; f < all_count; f++) {
+    if (!keep[f]) continue;
+    memmove(s->faces[s->face_count], s->faces[f], sizeof *s->faces);
+    if (s->tags) s->tags[s->face_count] = s->tags[f];
+    s->winding_slot[s->face_count++] = f;
   }
+  s->all = s->bvh;
+  s->winding.bvh = &s->all;
+  s->bvh = (laves__bvh){0};
+  if (!build_tree(s, s->winding_slot)) goto clean_up;
+  for (uint32_t f = 0; f < s->face_count; f++) {
+    flags[f] = s->face_flags[s->winding_slot[f]];
+    number[s->winding_slot[f]] = f;
+  }
+  memcpy(s->face_flags, flags, s->face_capacity);
+  for (size_t i = 0; i < c->count; i++)
+    for (int k = 0; k < 2; k++) c->pairs[i][k] = number[c->pairs[i][k]];
+  done = true;
+clean_up:
+  laves__free(s->context, number, all_count, sizeof *number);
+  laves__free(s->context, flags, s->face_capacity, sizeof *flags);
+  return done;
+}
+
+/* Parts that stand inside out by themselves are turned; then the winding number is that of a new surface. */
+static bool turn_inverted(laves__surface *s, const bool *inverted, laves_domain_info *info) {
+  bool any = false;
+  for (uint32_t f = 0; f < s->face_count; f++) {
+    if (!inverted[f]) continue;
+    any = true;
+    turn_face(s, f);
+  }
+  if (!any) return true;
+  info->turned = true;
+  laves__winding_free(s->context, &s->winding);
+  return renew_topology(s, info) && laves__winding_build(s->context, &s->bvh, &s->winding);
+}
+
+/* Closed, but in several parts, crossing itself or not manifold: the union of what it encloses. */
+static bool solve_union(laves__surface *s, laves__crossings *c, laves_domain_info *info) {
+  bool done = false;
+  const size_t count = s->face_count;
+  bool *keep = laves__alloc(s->context, count, sizeof *keep);
+  bool *inverted = laves__alloc(s->context, count, sizeof *inverted);
+  s->needs_winding = true;
+  mark_partial(s, c);
+  if (!keep || !inverted || !laves__winding_build(s->context, &s->bvh, &s->winding)) goto clean_up;
+  if (!laves__surface_find_walls(s, keep, inverted)) goto clean_up;
+  if (!turn_inverted(s, inverted, info) || !laves__surface_find_walls(s, keep, inverted)) goto clean_up;
+  size_t kept = 0;
+  for (size_t f = 0; f < count; f++) kept += keep[f];
+  if (kept > 0 && kept < count && (!leave_out(s, keep, c) || !renew_topology(s, info))) goto clean_up;
+  mark_doubtful(s);
+  if (!laves__surface_find_segments(s, c)) goto clean_up;
+  laves__surface_measure(s, &info->volume, &info->area);
+  if (c->count > 0) info->volume = NAN;
+  done = true;
+clean_up:
+  laves__free(s->context, keep, count, sizeof *keep);
+  laves__free(s->context, inverted, count, sizeof *inverted);
+  return done;
+}
+
+static void note_crossings(const laves__surface *s, const laves__crossings *c, laves_domain_info *info) {
+  if (c->count == 0) return;
+  const laves__triangle *t = &s->bvh.triangles[c->pairs[0][0]];
+  laves__vec3 ends[2] = {t->a, t->b};
+  laves__triangles_meet(t, &s->bvh.triangles[c->pairs[0][1]], ends);
+  const laves__vec3 place = v3_lerp(ends[0], ends[1], 0.5);
+  info->defects[LAVES_DEFECT_CROSSING] = c->count;
+  info->defect_place[LAVES_DEFECT_CROSSING][0] = place.x;
+  info->defect_place[LAVES_DEFECT_CROSSING][1] = place.y;
+  info->defect_place[LAVES_DEFECT_CROSSING][2] = place.z;
 }
 
 static bool solve(laves__surface *s, laves_domain_info *info) {
-  if (!build_tree(s) || !laves__surface_topology(s, info)) return false;
-  double volume, area;
-  laves__surface_measure(s, &volume, &area);
-  if (volume < 0) {
-    turn_all(s);
+  laves__crossings crossings = {0};
+  bool done = false;
+  s->face_flags = laves__alloc_zeroed(s->context, s->face_capacity, sizeof *s->face_flags);
+  if (!s->face_flags || !build_tree(s, NULL) || !laves__surface_topology(s, info)) goto clean_up;
+  laves__surface_measure(s, &info->volume, &info->area);
+  if (info->volume < 0) {
+    for (uint32_t f = 0; f < s->face_count; f++) turn_face(s, f);
     info->turned = true;
-    const laves_domain_info before = *info;
-    if (!laves__surface_topology(s, info)) return false;
-    *info = before;
+    info->volume = -info->volume;
+    if (!renew_topology(s, info)) goto clean_up;
   }
-  info->volume = fabs(volume);
-  info->area = area;
-  return laves__surface_normals(s);
+  if (!laves__surface_crossings(s, &crossings)) goto clean_up;
+  note_crossings(s, &crossings, info);
+  if (crossings.count > 0 || info->component_count > 1 || any_doubt(s))
+    if (!solve_union(s, &crossings, info)) goto clean_up;
+  done = laves__surface_normals(s);
+clean_up:
+  laves__crossings_free(s->context, &crossings);
+  return done;
 }
 
 static void to_input(laves__vec3 p, laves__vec3 origin, double out[3]) {

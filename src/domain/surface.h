@@ -4,6 +4,9 @@
  *   surface_weld.c      equal points become one, degenerate and repeated faces go
  *   surface_topology.c  faces across edges, fans, components, normals
  *   surface_bvh.c       the tree and the nearest triangle
+ *   surface_crossing.c  pairs of triangles that meet where they should not
+ *   surface_winding.c   how often the surface winds round a point
+ *   surface_patch.c     which triangles bound the union of what is enclosed
  *   surface_oracle.c    sign, distance, projection
  *
  * Coordinates are local everywhere: input minus origin. */
@@ -18,7 +21,7 @@
 #define LAVES__NONE UINT32_MAX
 
 /* Faces are counted in 28 bits inside the tree. */
-enum { LAVES__FACES_MAX = 1 << 28, LAVES__LEAF_MAX = 4, LAVES__BVH_STACK = 256 };
+enum { LAVES__FACES_MAX = 1 << 28, LAVES__LEAF_MAX = 2, LAVES__BVH_STACK = 256 };
 
 /* ---- tree ---- */
 
@@ -32,7 +35,7 @@ typedef struct laves__triangle {
  * a node, or LAVES__LEAF_BIT | (count - 1) << 28 | first slot. Unused boxes are far away and their child is a leaf. */
 #define LAVES__LEAF_BIT 0x80000000u
 typedef struct laves__bvh_node {
-  float lower[3][4], upper[3][4];
+  float centre[3][4], half[3][4];
   uint32_t child[4];
 } laves__bvh_node;
 
@@ -66,7 +69,48 @@ laves__vec3 laves__triangle_closest(const laves__triangle *t, laves__vec3 p, int
  * distance to its slot. */
 void laves__bvh_nearest(const laves__bvh *bvh, laves__vec3 p, laves__nearest *best);
 
+/* Distance by parts: a triangle whose whole is nearer than distance2 is handed to `measure`, which returns the squared
+ * distance to what counts of it (INFINITY: nothing). */
+typedef double laves__measure_fn(void *user, uint32_t slot, double distance2, laves__vec3 p);
+void laves__bvh_nearest_part(const laves__bvh *bvh, laves__vec3 p, laves__measure_fn *measure, void *user, laves__nearest *best);
+
+/* Calls fn for every slot from `least` on whose triangle's leaf overlaps the box (units of the surface). */
+typedef void laves__slot_fn(void *user, uint32_t slot);
+void laves__bvh_overlaps(const laves__bvh *bvh, laves__box3 box, laves__slot_fn *fn, void *user);
+
+/* ---- winding number ---- */
+
+/* What the far field of a node needs: the vector area and its first moment about the centre. */
+typedef struct laves__moment {
+  laves__vec3 centre, area_vector;
+  double far2;     /* squared distance from the centre beyond which the expansion is used */
+  double first[6]; /* xx yy zz, and the sums xy yz zx of both orders */
+  double area, radius;
+} laves__moment;
+
+typedef struct laves__winding {
+  laves__bvh *bvh;
+  laves__moment *moments; /* [moment_count], one for each node */
+  size_t moment_count;
+} laves__winding;
+
+/* bvh stays the caller's and must outlive the result. */
+bool laves__winding_build(laves_context *context, laves__bvh *bvh, laves__winding *w);
+void laves__winding_free(laves_context *context, laves__winding *w);
+/* How often the surface winds round p, leaving out the triangles in slots skip_a and skip_b (LAVES__NONE: none). An
+ * integer for closed surfaces, to about 1e-2. */
+double laves__winding_number(const laves__winding *w, laves__vec3 p, uint32_t skip_a, uint32_t skip_b);
+
 /* ---- surface ---- */
+
+/* Of a face: it meets others, so that a part of it may lie inside the solid. */
+enum { LAVES__PARTIAL = 1 };
+
+/* Where a partial face meets another. */
+typedef struct laves__segment {
+  laves__vec3 ends[2];
+  uint32_t other;
+} laves__segment;
 
 typedef struct laves__surface {
   laves_context *context;
@@ -80,6 +124,16 @@ typedef struct laves__surface {
   laves__vec3 *point_normals; /* [point_capacity] weighted by angle */
   laves__bvh bvh;
   double diagonal;
+  /* Where normals do not tell the sign, the winding number does: at partial faces and at doubtful points and edges. */
+  bool needs_winding;
+  uint8_t *face_flags;   /* [face_capacity] */
+  bool *doubtful_points; /* [point_capacity] points of partial faces, of edges without one other face, of several fans */
+  laves__winding winding;
+  laves__bvh all;         /* the tree behind `winding` when walls were left out of `bvh`; else empty */
+  uint32_t *winding_slot; /* [face_capacity] slot in `all` of each face; NULL: the same */
+  laves__segment *segments;
+  uint32_t *segment_starts; /* [face_capacity + 1] */
+  size_t segment_count;
 } laves__surface;
 
 /* ---- weld ---- */
@@ -90,7 +144,8 @@ bool laves__surface_weld(laves__surface *s, const laves__surface_input *input, l
 
 /* ---- topology ---- */
 
-/* Fills `across` and counts what info holds about edges, fans and components. False when memory is short. */
+/* Fills `across` and doubtful_points (whose faces form no single closed fan), and counts what info holds about edges, fans
+ * and components (info may be a scratch copy). False when memory is short. */
 bool laves__surface_topology(laves__surface *s, laves_domain_info *info);
 bool laves__surface_normals(laves__surface *s);
 /* Signed volume (meaningful for closed surfaces) and area. */
@@ -98,6 +153,29 @@ void laves__surface_measure(const laves__surface *s, double *volume, double *are
 
 /* atan2(y, x) for any x, y to 2e-8, from arithmetic and square roots alone, so that it is the same on every platform. */
 double laves__angle(double y, double x);
+
+/* ---- crossings ---- */
+
+typedef struct laves__crossings {
+  uint32_t (*pairs)[2]; /* slots, the lesser first, sorted */
+  size_t count, capacity;
+} laves__crossings;
+
+/* All pairs of triangles that cross, overlap, or touch other than in common points and edges. False when memory is short
+ * or on a cancel. */
+bool laves__surface_crossings(const laves__surface *s, laves__crossings *all);
+void laves__crossings_free(laves_context *context, laves__crossings *c);
+/* The segment in which two triangles of different planes meet, to rounding. */
+bool laves__triangles_meet(const laves__triangle *t, const laves__triangle *u, laves__vec3 ends[2]);
+
+/* ---- walls ---- */
+
+/* Winding number at the middle of a face, the mean of both sides. */
+double laves__surface_mean_winding(const laves__surface *s, uint32_t slot);
+/* keep[f]: face f bounds the solid {winding number >= 1}, or is partial; inverted[f]: it bounds {<= -1} instead. Both
+ * bool[face_count]. False when memory is short. */
+bool laves__surface_find_walls(const laves__surface *s, bool *keep, bool *inverted);
+bool laves__surface_find_segments(laves__surface *s, const laves__crossings *c);
 
 /* ---- oracle ---- */
 

@@ -19,7 +19,8 @@
 
 enum { BIN_COUNT = 16, BALANCED_DEPTH = 24 };
 
-/* In units of the tree: twice what rounding a coordinate below 2 to float can lose, and so how far boxes are widened. */
+/* In units of the tree: more than what rounding of a coordinate below 2 to float, and of a box's centre and half, can
+ * lose together; so far boxes are widened. */
 static const float box_slack = 0x1p-21f;
 /* More than the relative error of the float distance to a box. */
 static const float limit_slack = 1.0f + 0x1p-18f;
@@ -165,8 +166,8 @@ static uint32_t part(item *items, uint32_t begin, uint32_t end, int depth) {
 
 static void set_box(laves__bvh_node *node, int i, const box *b) {
   for (int k = 0; k < 3; k++) {
-    node->lower[k][i] = b->lower[k];
-    node->upper[k][i] = b->upper[k];
+    node->centre[k][i] = 0.5f * (b->lower[k] + b->upper[k]);
+    node->half[k][i] = 0.5f * (b->upper[k] - b->lower[k]);
   }
 }
 
@@ -288,19 +289,22 @@ static inline laves__vec3 closest_on_segment(laves__vec3 u, laves__vec3 v, laves
   return v3_mad(u, uv, along / length2);
 }
 
+/* What is closest lies on an edge beyond which p stands, so only those are tried; all three where the dual is NAN. */
 static inline laves__vec3 closest(const laves__triangle *t, laves__vec3 p, int *on) {
   const laves__vec3 ap = v3_sub(p, t->a);
   const double v = v3_dot(ap, t->dual_b), w = v3_dot(ap, t->dual_c);
-  if (v >= 0 && w >= 0 && v + w <= 1) {
+  const bool beyond[3] = {!(w >= 0), !(v + w <= 1), !(v >= 0)};
+  if (!beyond[0] && !beyond[1] && !beyond[2]) {
     *on = LAVES__ON_FACE;
     return v3_add(t->a, v3_add(v3_scale(v3_sub(t->b, t->a), v), v3_scale(v3_sub(t->c, t->a), w)));
   }
-  const laves__vec3 corners[4] = {t->a, t->b, t->c, t->a};
+  const laves__vec3 *corners[4] = {&t->a, &t->b, &t->c, &t->a};
   laves__vec3 best = t->a;
   double least = INFINITY;
   for (int i = 0; i < 3; i++) {
+    if (!beyond[i]) continue;
     int end;
-    const laves__vec3 foot = closest_on_segment(corners[i], corners[i + 1], p, &end);
+    const laves__vec3 foot = closest_on_segment(*corners[i], *corners[i + 1], p, &end);
     const double d2 = v3_norm2(v3_sub(p, foot));
     if (d2 < least) {
       least = d2;
@@ -318,16 +322,25 @@ double laves__triangle_distance2(const laves__triangle *t, laves__vec3 p) {
   return v3_norm2(v3_sub(p, closest(t, p, &on)));
 }
 
+/* Four lanes, in the vector notation that GCC and Clang share; plain loops are not turned into vector code here. */
+typedef float float4 __attribute__((vector_size(16), aligned(4), may_alias));
+typedef int32_t int4 __attribute__((vector_size(16), aligned(4), may_alias));
+
+/* How far x lies outside [centre - half, centre + half], lane by lane. */
+static inline float4 outside(float x, const float4 *centre, const float4 *half) {
+  const int4 no_sign = {INT32_MAX, INT32_MAX, INT32_MAX, INT32_MAX};
+  const float4 offset = x - *centre;
+  const float4 d = (float4)((int4)offset & no_sign) - *half;
+  return (float4)((int4)d & (d > 0));
+}
+
 /* Squared distances of p to the four boxes, in units of the tree. */
-static inline void box_distances(const laves__bvh_node *n, const float p[3], float d2[4]) {
-  for (int i = 0; i < 4; i++) d2[i] = 0;
-  for (int k = 0; k < 3; k++)
-    for (int i = 0; i < 4; i++) {
-      const float below = n->lower[k][i] - p[k], above = p[k] - n->upper[k][i];
-      const float outside = below > above ? below : above;
-      const float d = outside > 0 ? outside : 0;
-      d2[i] += d * d;
-    }
+static inline float4 box_distances(const laves__bvh_node *n, const float p[3]) {
+  const float4 *centre = (const float4 *)n->centre, *half = (const float4 *)n->half;
+  const float4 x = outside(p[0], &centre[0], &half[0]);
+  const float4 y = outside(p[1], &centre[1], &half[1]);
+  const float4 z = outside(p[2], &centre[2], &half[2]);
+  return x * x + y * y + z * z;
 }
 
 typedef struct visit {
@@ -337,8 +350,7 @@ typedef struct visit {
 
 /* Pushes the children within limit, the nearest on top. */
 static inline int push_children(const laves__bvh_node *n, const float p[3], float limit, visit *stack, int top) {
-  float d2[4];
-  box_distances(n, p, d2);
+  const float4 d2 = box_distances(n, p);
   const int bottom = top;
   for (int i = 0; i < 4; i++) {
     if (d2[i] > limit) continue;
@@ -372,6 +384,60 @@ void laves__bvh_nearest(const laves__bvh *bvh, laves__vec3 point, laves__nearest
       if (d2 > best->distance2 || (d2 == best->distance2 && slot >= best->slot)) continue;
       *best = (laves__nearest){d2, slot};
       limit = search_limit(bvh, d2);
+    }
+  }
+}
+
+void laves__bvh_nearest_part(const laves__bvh *bvh, laves__vec3 point, laves__measure_fn *measure, void *user,
+                             laves__nearest *best) {
+  const float p[3] = {(float)(point.x * bvh->scale), (float)(point.y * bvh->scale), (float)(point.z * bvh->scale)};
+  visit stack[LAVES__BVH_STACK];
+  float limit = search_limit(bvh, best->distance2);
+  int top = push_children(&bvh->nodes[0], p, limit, stack, 0);
+  while (top > 0) {
+    const visit next = stack[--top];
+    if (next.d2 > limit) continue;
+    if (!(next.child & LAVES__LEAF_BIT)) {
+      top = push_children(&bvh->nodes[next.child], p, limit, stack, top);
+      continue;
+    }
+    const uint32_t first = next.child & 0x0fffffffu, last = first + (next.child >> 28 & 7);
+    for (uint32_t slot = first; slot <= last; slot++) {
+      const double whole = laves__triangle_distance2(&bvh->triangles[slot], point);
+      if (whole > best->distance2) continue;
+      const double d2 = measure(user, slot, whole, point);
+      if (d2 > best->distance2 || (d2 == best->distance2 && slot >= best->slot)) continue;
+      *best = (laves__nearest){d2, slot};
+      limit = search_limit(bvh, d2);
+    }
+  }
+}
+
+/* ---- boxes ---- */
+
+void laves__bvh_overlaps(const laves__bvh *bvh, laves__box3 region, laves__slot_fn *fn, void *user) {
+  const laves__vec3 c = v3_scale(box3_centre(region), bvh->scale);
+  const laves__vec3 h = v3_scale(v3_sub(region.upper, region.lower), 0.5 * bvh->scale);
+  const float centre[3] = {(float)c.x, (float)c.y, (float)c.z};
+  const float half[3] = {(float)h.x + box_slack, (float)h.y + box_slack, (float)h.z + box_slack};
+  uint32_t stack[LAVES__BVH_STACK];
+  int top = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    const laves__bvh_node *n = &bvh->nodes[stack[--top]];
+    const float4 *node_centre = (const float4 *)n->centre, *node_half = (const float4 *)n->half;
+    const int4 apart = (outside(centre[0], &node_centre[0], &node_half[0]) > half[0]) |
+                       (outside(centre[1], &node_centre[1], &node_half[1]) > half[1]) |
+                       (outside(centre[2], &node_centre[2], &node_half[2]) > half[2]);
+    for (int i = 0; i < 4; i++) {
+      if (apart[i]) continue;
+      const uint32_t child = n->child[i];
+      if (!(child & LAVES__LEAF_BIT)) {
+        stack[top++] = child;
+        continue;
+      }
+      const uint32_t first = child & 0x0fffffffu, last = first + (child >> 28 & 7);
+      for (uint32_t slot = first; slot <= last; slot++) fn(user, slot);
     }
   }
 }

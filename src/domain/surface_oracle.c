@@ -8,6 +8,10 @@
  * slot of the tree. */
 #include "domain/surface.h"
 
+/* How far from a face's point towards its middle the winding number is asked, in parts of the way: far more than rounding,
+ * far less than what a mesh resolves. */
+static const double inwards = 1e-4;
+
 /* Directed outwards, not of length one. */
 static laves__vec3 feature_normal(const laves__surface *s, uint32_t slot, int on) {
   if (on == LAVES__ON_FACE) return s->face_normals[slot];
@@ -35,9 +39,93 @@ static laves__nearest nearest(const laves__surface *s, laves__vec3 p, uint32_t s
   return (laves__nearest){laves__triangle_distance2(&s->bvh.triangles[0], p), 0};
 }
 
+/* ---- where the winding number decides ---- */
+
+static uint32_t winding_slot(const laves__surface *s, uint32_t slot) { return s->winding_slot ? s->winding_slot[slot] : slot; }
+
+/* Whether the normal at this feature cannot be trusted with the sign. */
+static bool is_doubtful(const laves__surface *s, uint32_t slot, int on) {
+  if (!s->needs_winding) return false;
+  if ((s->face_flags[slot] & LAVES__PARTIAL) != 0) return true;
+  if (on == LAVES__ON_FACE) return false;
+  if (on >= LAVES__ON_CORNER) return s->doubtful_points[s->faces[slot][on - LAVES__ON_CORNER]];
+  const uint32_t half = s->across[3 * (size_t)slot + (size_t)(on - LAVES__ON_EDGE)];
+  return half == LAVES__NONE || (s->face_flags[half / 3] & LAVES__PARTIAL) != 0;
+}
+
+static bool is_inside(const laves__surface *s, laves__vec3 p) {
+  return laves__winding_number(&s->winding, p, LAVES__NONE, LAVES__NONE) > 0.5;
+}
+
+/* Whether a partial face bounds the solid at its point q. With the face left out the number is the mean of both sides, so
+ * 1/2 says outside before and inside behind. The question is asked a little inwards, off the edges. */
+static bool bounds_at(const laves__surface *s, uint32_t slot, laves__vec3 q) {
+  const laves__triangle *t = &s->bvh.triangles[slot];
+  const laves__vec3 middle = v3_scale(v3_add(t->a, v3_add(t->b, t->c)), 1.0 / 3);
+  const double mean = laves__winding_number(&s->winding, v3_lerp(q, middle, inwards), winding_slot(s, slot), LAVES__NONE);
+  return mean > 0 && mean < 1;
+}
+
+/* The same for a point of the segment where two faces meet; here the mean is that of four sides, of -1 to 1 about it. */
+static bool bounds_at_crossing(const laves__surface *s, uint32_t slot, uint32_t other, laves__vec3 q) {
+  const double mean = laves__winding_number(&s->winding, q, winding_slot(s, slot), winding_slot(s, other));
+  return mean > -0.5 && mean < 1.5;
+}
+
+static laves__vec3 closest_on_segment(const laves__segment *g, laves__vec3 p) {
+  const laves__vec3 uv = v3_sub(g->ends[1], g->ends[0]);
+  const double t = v3_dot(v3_sub(p, g->ends[0]), uv) / v3_norm2(uv);
+  return t > 0 ? v3_lerp(g->ends[0], g->ends[1], t < 1 ? t : 1) : g->ends[0];
+}
+
+/* The closest point of what counts of a face: its own closest point, or one where it meets others. `other` receives the
+ * face met there, or LAVES__NONE. Squared distance; INFINITY when nothing counts. */
+static double closest_part(const laves__surface *s, uint32_t slot, laves__vec3 p, laves__vec3 *foot, int *on, uint32_t *other) {
+  *foot = laves__triangle_closest(&s->bvh.triangles[slot], p, on);
+  *other = LAVES__NONE;
+  if (!(s->face_flags[slot] & LAVES__PARTIAL) || bounds_at(s, slot, *foot)) return v3_norm2(v3_sub(p, *foot));
+  double least = INFINITY;
+  for (uint32_t i = s->segment_starts[slot]; i < s->segment_starts[slot + 1]; i++) {
+    const laves__segment *g = &s->segments[i];
+    const laves__vec3 q = closest_on_segment(g, p);
+    const double d2 = v3_norm2(v3_sub(p, q));
+    if (d2 >= least || !bounds_at_crossing(s, slot, g->other, q)) continue;
+    least = d2;
+    *foot = q;
+    *other = g->other;
+  }
+  return least;
+}
+
+static double measure_part(void *user, uint32_t slot, double distance2, laves__vec3 p) {
+  const laves__surface *s = user;
+  if (!(s->face_flags[slot] & LAVES__PARTIAL)) return distance2;
+  laves__vec3 foot;
+  int on;
+  uint32_t other;
+  return closest_part(s, slot, p, &foot, &on, &other);
+}
+
+/* Like nearest_from, with hidden parts of partial faces left out. */
+static laves__nearest nearest_part(const laves__surface *s, laves__vec3 p, double distance2) {
+  laves__nearest best = {distance2, LAVES__NONE};
+  laves__bvh_nearest_part(&s->bvh, p, measure_part, (void *)s, &best);
+  return best;
+}
+
+static double signed_distance_by_winding(const laves__surface *s, laves__vec3 p, const laves__nearest *n) {
+  laves__nearest part = *n;
+  if ((s->face_flags[n->slot] & LAVES__PARTIAL) != 0) part = nearest_part(s, p, INFINITY);
+  const double distance = sqrt(part.slot == LAVES__NONE ? n->distance2 : part.distance2);
+  return is_inside(s, p) ? -distance : distance;
+}
+
+/* ---- the oracle ---- */
+
 static double signed_distance(const laves__surface *s, laves__vec3 p, const laves__nearest *n) {
   int on;
   const laves__vec3 foot = laves__triangle_closest(&s->bvh.triangles[n->slot], p, &on);
+  if (is_doubtful(s, n->slot, on)) return signed_distance_by_winding(s, p, n);
   const double distance = sqrt(n->distance2);
   return v3_dot(v3_sub(p, foot), feature_normal(s, n->slot, on)) < 0 ? -distance : distance;
 }
@@ -55,11 +143,19 @@ static void evaluate(const void *self, size_t count, const laves__vec3 *points, 
 
 static bool project(const void *self, laves__vec3 point, double reach, uint32_t *hint, laves__vec3 *foot, laves__vec3 *normal) {
   const laves__surface *s = self;
-  const laves__nearest n = nearest_from(s, point, reach * reach, *hint);
+  laves__nearest n = nearest_from(s, point, reach * reach, *hint);
   if (n.slot == LAVES__NONE) return false;
   int on;
-  *foot = laves__triangle_closest(&s->bvh.triangles[n.slot], point, &on);
-  *normal = v3_unit(feature_normal(s, n.slot, on));
+  uint32_t other = LAVES__NONE;
+  if (s->needs_winding && (s->face_flags[n.slot] & LAVES__PARTIAL) != 0) {
+    n = nearest_part(s, point, reach * reach);
+    if (n.slot == LAVES__NONE) return false;
+    closest_part(s, n.slot, point, foot, &on, &other);
+  } else {
+    *foot = laves__triangle_closest(&s->bvh.triangles[n.slot], point, &on);
+  }
+  const laves__vec3 n0 = feature_normal(s, n.slot, on);
+  *normal = v3_unit(other == LAVES__NONE ? n0 : v3_add(s->face_normals[n.slot], s->face_normals[other]));
   *hint = n.slot;
   return true;
 }
@@ -97,6 +193,13 @@ void laves__surface_free(laves_context *context, void *self) {
   laves__free(context, s->faces, s->face_capacity, sizeof *s->faces);
   laves__free(context, s->tags, s->face_capacity, sizeof *s->tags);
   laves__free(context, s->across, 3 * s->face_capacity, sizeof *s->across);
+  laves__winding_free(context, &s->winding);
+  laves__bvh_free(context, &s->all);
+  laves__free(context, s->face_flags, s->face_capacity, sizeof *s->face_flags);
+  laves__free(context, s->doubtful_points, s->point_capacity, sizeof *s->doubtful_points);
+  laves__free(context, s->winding_slot, s->face_capacity, sizeof *s->winding_slot);
+  laves__free(context, s->segments, s->segment_count, sizeof *s->segments);
+  laves__free(context, s->segment_starts, s->face_capacity + 1, sizeof *s->segment_starts);
   laves__free(context, s->face_normals, s->face_capacity, sizeof *s->face_normals);
   laves__free(context, s->point_normals, s->point_capacity, sizeof *s->point_normals);
   laves__free(context, s, 1, sizeof *s);

@@ -153,12 +153,12 @@ static size_t turn(const laves__surface *s, uint32_t point, uint32_t face, uint3
   return met;
 }
 
-/* Whether all `count` faces at the point form one fan; `face` is any of them. */
-static bool one_fan(const laves__surface *s, uint32_t point, uint32_t face, size_t count) {
+/* Whether all `count` faces at the point form one fan, and whether it closes; `face` is any of them. */
+static bool one_fan(const laves__surface *s, uint32_t point, uint32_t face, size_t count, bool *closes) {
   const uint32_t corner = corner_of(s, face, point);
-  bool closes;
-  size_t met = 1 + turn(s, point, face, corner, count, &closes);
-  if (!closes) met += turn(s, point, face, (corner + 2) % 3, count, &closes);
+  bool back;
+  size_t met = 1 + turn(s, point, face, corner, count, closes);
+  if (!*closes) met += turn(s, point, face, (corner + 2) % 3, count, &back);
   return met == count;
 }
 
@@ -173,8 +173,12 @@ static bool judge_points(laves__surface *s, laves_domain_info *info) {
         valence[s->faces[f][i]]++;
         any_face[s->faces[f][i]] = (uint32_t)f;
       }
-    for (uint32_t p = 0; p < count; p++)
-      if (valence[p] > 0 && !one_fan(s, p, any_face[p], valence[p])) note(info, LAVES_DEFECT_NONMANIFOLD_VERTEX, s->points[p]);
+    for (uint32_t p = 0; p < count; p++) {
+      bool closes = false;
+      const bool single = valence[p] == 0 || one_fan(s, p, any_face[p], valence[p], &closes);
+      if (!single) note(info, LAVES_DEFECT_NONMANIFOLD_VERTEX, s->points[p]);
+      s->doubtful_points[p] = !single || !closes;
+    }
   }
   laves__free(s->context, valence, count, sizeof *valence);
   laves__free(s->context, any_face, count, sizeof *any_face);
@@ -188,7 +192,8 @@ bool laves__surface_topology(laves__surface *s, laves_domain_info *info) {
   use *uses = laves__alloc(s->context, half_count, sizeof *uses);
   uint32_t *parent = laves__alloc(s->context, s->face_count, sizeof *parent);
   if (!s->across) s->across = laves__alloc(s->context, 3 * s->face_capacity, sizeof *s->across);
-  if (!starts || !uses || !parent || !s->across) goto clean_up;
+  if (!s->doubtful_points) s->doubtful_points = laves__alloc(s->context, s->point_capacity, sizeof *s->doubtful_points);
+  if (!starts || !uses || !parent || !s->across || !s->doubtful_points) goto clean_up;
   for (uint32_t f = 0; f < s->face_count; f++) parent[f] = f;
   list_uses(s, starts, uses);
   edges e = {s, info, parent, true};
