@@ -4,7 +4,7 @@
  * of boxes in an array, node i over nodes 2i and 2i + 1, leaves padded with empty boxes to a power of two. A query goes
  * down nearest box first and drops boxes that are no nearer than what it has.
  *
- * The nearest point of a triangle: Ericson, Real-Time Collision Detection, 2005, section 5.1.5, by Voronoi regions. */
+ * The nearest point of a triangle by Voronoi regions: [ericson2005], section 5.1.5. */
 #include "certify/boundary_tree.h"
 
 enum { LEAF_TRIANGLES = 4, MORTON_BITS = 21, STACK = 64 };

@@ -4,8 +4,7 @@
  * next; so the result does not depend on the threads. Every array begins with a header of its kind and size, so that one
  * array cannot pass for the end of another.
  *
- * Source: Austin Appleby, MurmurHash3 (x64, 128 bits), 2011, placed in the public domain; written anew from its
- * description, with a seed of 128 bits. */
+ * Source: MurmurHash3 in its variant x64 with 128 bits [appleby2011], written anew, with a seed of 128 bits. */
 #include "mesh/hash128.h"
 
 #include <stdio.h>

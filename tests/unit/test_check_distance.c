@@ -293,7 +293,7 @@ static void short_of_memory(void **state) {
   laves_mesh *mesh = fixture_ball(builder, 3, 1);
   balls b = {1, {{0, 0, 0}}, 1.3};
   laves_domain domain = domain_of(&b, v3(0, 0, 0));
-  for (size_t limit = 1; !enough; limit += limit < 300000 ? 2000 : 40000000) {
+  for (size_t limit = 1; !enough; limit += limit < 300000 ? 8000 : 40000000) {
     laves_context_options options = laves_context_options_default();
     options.memory_limit = limit;
     laves_context *context = laves_context_create(&options);
