@@ -84,18 +84,33 @@ static uint64_t raw_bytes(const array *a) { return (uint64_t)a->count * kind_byt
 
 /* ---- raw ---- */
 
+/* One loop for each array, so that the compiler sees what it writes: size and value_of are constants where this is called. */
+static inline __attribute__((always_inline)) void pack_integers(const grid *g, size_t begin, size_t end, char *bytes, size_t size,
+                                                                int64_t (*value_of)(const grid *g, size_t i)) {
+  for (size_t i = begin; i < end; i++, bytes += size) {
+    const int64_t value = value_of(g, i);
+    memcpy(bytes, &value, size); /* the low bytes come first */
+  }
+}
+
 static size_t pack(const void *user, size_t begin, size_t end, char *bytes) {
   const array *a = user;
+  const grid *g = a->grid;
   const size_t size = kind_bytes[a->kind];
-  for (size_t i = begin; i < end; i++, bytes += size) {
-    if (a->kind == FLOAT64) {
-      const double value = coordinate(a->grid, i);
-      memcpy(bytes, &value, sizeof value);
-    } else {
-      const int64_t value = a->integer(a->grid, i);
-      memcpy(bytes, &value, size); /* the low bytes come first */
-    }
-  }
+  if (a->kind == FLOAT64)
+    memcpy(bytes, &g->mesh->points[0].x + begin, (end - begin) * size);
+  else if (a->integer == corner)
+    pack_integers(g, begin, end, bytes, sizeof(int32_t), corner);
+  else if (a->integer == offset && a->kind == INT32)
+    pack_integers(g, begin, end, bytes, sizeof(int32_t), offset);
+  else if (a->integer == offset)
+    pack_integers(g, begin, end, bytes, sizeof(int64_t), offset);
+  else if (a->integer == type)
+    pack_integers(g, begin, end, bytes, sizeof(uint8_t), type);
+  else if (a->integer == region)
+    pack_integers(g, begin, end, bytes, sizeof(int32_t), region);
+  else
+    pack_integers(g, begin, end, bytes, sizeof(uint8_t), class);
   return (end - begin) * size;
 }
 
