@@ -100,7 +100,7 @@ static bool next_tag(const char **at, const char *end, tag *t) {
   return false;
 }
 
-/* The value of an attribute; false when there is none of that name. */
+/* The value of an attribute; false when there is none of that name, and then value stays as it was. */
 static bool attribute(const tag *t, const char *name, laves__word *value) {
   const char *at = t->at;
   const size_t length = strlen(name);
@@ -114,11 +114,12 @@ static bool attribute(const tag *t, const char *name, laves__word *value) {
     while (at < t->end && is_space(*at)) at++;
     if (at == t->end || (*at != '"' && *at != '\'')) return false;
     const char quote = *at++;
-    value->at = at;
+    const char *content = at;
     if (!find_byte(&at, t->end, quote)) return false;
-    value->length = (size_t)(at - value->at);
-    at++;
-    if ((size_t)(name_end - begin) == length && memcmp(begin, name, length) == 0) return true;
+    const char *content_end = at++;
+    if ((size_t)(name_end - begin) != length || memcmp(begin, name, length) != 0) continue;
+    *value = (laves__word){content, (size_t)(content_end - content)};
+    return true;
   }
   return false;
 }
