@@ -1,0 +1,121 @@
+/* laves info INPUT: what it is, what is wrong with it and where, its thinnest parts against the size, and what meshing it
+ * will cost.  Nothing is meshed or written. */
+#include <math.h>
+#include <stdio.h>
+
+#include "command.h"
+#include "estimate.h"
+#include "input.h"
+#include "output.h"
+#include "session.h"
+#include "summary.h"
+#include "text.h"
+
+enum { THIN_CAPACITY = 8 };
+
+/* Parts thinner than this many sizes come out rough, those thinner than one may vanish. */
+static const double well_resolved = 2;
+
+typedef struct info_run {
+  input in;
+  estimate cost;
+  bool has_cost;
+  laves_thin_place thin[THIN_CAPACITY];
+  size_t thin_count;
+  double thin_seconds;
+} info_run;
+
+static void say_measures(const info_run *all) {
+  const laves_domain_info *info = &all->in.info;
+  text_buffer lower, upper;
+  text_say("  box %s .. %s, diagonal %.6g", text_place(&lower, info->lower), text_place(&upper, info->upper),
+           input_diagonal(info));
+  text_say("  volume %.6g, area %.6g%s", all->cost.volume, all->cost.area, all->cost.sampled ? " (sampled)" : "");
+}
+
+static void say_tags(const info_run *all) {
+  enum { MOST = 12 };
+  const int count = all->in.info.tag_count;
+  if (count == 0) return;
+  fputs("  named parts:", stderr);
+  for (int i = 0; i < count && i < MOST; ++i) fprintf(stderr, "%s %s", i ? "," : "", laves_domain_tag_name(all->in.domain, i));
+  text_say("%s", count > MOST ? ", ..." : "");
+}
+
+static void say_thin(const info_run *all) {
+  const double size = all->cost.size;
+  text_buffer place;
+  size_t rough = 0;
+  while (rough < all->thin_count && all->thin[rough].thickness < well_resolved * size) ++rough;
+  if (all->thin_count == 0) return;
+  if (rough == 0) {
+    text_say("  thinnest part %.4g (%.1f sizes) at %s", all->thin[0].thickness, all->thin[0].thickness / size,
+             text_place(&place, all->thin[0].place));
+    return;
+  }
+  for (size_t i = 0; i < rough; ++i) {
+    const double share = all->thin[i].thickness / size;
+    text_say("  thin: %.4g (%.2f sizes) at %s%s", all->thin[i].thickness, share, text_place(&place, all->thin[i].place),
+             share < 1 ? ": may be lost" : "");
+  }
+}
+
+static void say_cost(const info_run *all) {
+  text_buffer tets, vertices, bytes, seconds;
+  text_say("at size %.4g: about %s, %s, %s, %s of one core", all->cost.size, text_plural(&tets, (uint64_t)all->cost.tets, "tet"),
+           text_plural(&vertices, (uint64_t)all->cost.vertices, "vertex"), text_bytes(&bytes, all->cost.bytes),
+           text_seconds(&seconds, all->cost.cpu_seconds));
+}
+
+static laves_result info_steps(session *run, info_run *all) {
+  laves_result result = outputs_check_json(run, run->given->input);
+  if (result == LAVES_OK) result = input_open(run, run->given->input, &all->in);
+  if (result != LAVES_OK) return result;
+  all->has_cost = estimate_make(&all->in, run->given, &all->cost);
+  const double start = progress_now();
+  all->thin_count = laves_domain_thin_places(all->in.domain, all->thin, THIN_CAPACITY);
+  all->thin_seconds = progress_now() - start;
+  result = session_settle(run, LAVES_OK);
+  if (result != LAVES_OK) return result;
+  if (session_speaks(run)) summary_input(&all->in, true);
+  if (!all->has_cost) return session_fail(run, LAVES_ERROR_INPUT, "the input has no inside: its volume is zero");
+  if (!session_speaks(run)) return LAVES_OK;
+  say_measures(all);
+  say_tags(all);
+  say_thin(all);
+  say_cost(all);
+  return LAVES_OK;
+}
+
+static void info_json(json *out, const session *run, const void *facts) {
+  const info_run *all = facts;
+  if (all->in.text) input_write_json(out, "input", &all->in);
+  if (all->has_cost) {
+    json_open_object(out, "estimate");
+    estimate_write_json(out, &all->cost);
+    json_close(out);
+  }
+  json_open_array(out, "thin_places");
+  for (size_t i = 0; i < all->thin_count; ++i) {
+    json_open_object(out, NULL);
+    json_numbers(out, "place", all->thin[i].place, 3);
+    json_number(out, "thickness", all->thin[i].thickness);
+    json_close(out);
+  }
+  json_close(out);
+  json_open_object(out, "seconds");
+  json_number(out, "read", all->in.seconds);
+  json_number(out, "thin_places", all->thin_seconds);
+  json_number(out, "total", progress_now() - run->start);
+  json_close(out);
+}
+
+int command_info(const settings *given) {
+  session run;
+  info_run all = {0};
+  if (!session_open(&run, given)) return laves_result_exit_code(LAVES_ERROR_MEMORY);
+  laves_result result = info_steps(&run, &all);
+  session_write_json(&run, &result, info_json, &all);
+  laves_domain_free(all.in.domain);
+  return session_close(&run, result);
+}

@@ -1,0 +1,207 @@
+/* laves mesh INPUT -o OUT: input -> generate -> check -> write -> summary, JSON. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "command.h"
+#include "input.h"
+#include "output.h"
+#include "session.h"
+#include "summary.h"
+#include "text.h"
+
+/* How far the count of tets or vertices may be from a wished one, as laves.h promises. */
+static const double count_slack = 0.03;
+
+typedef struct mesh_run {
+  input in;
+  outputs plan;
+  laves_options options;
+  laves_mesh *mesh;
+  laves_report report;
+  laves_check check;
+  bool has_check;
+  double check_seconds;
+} mesh_run;
+
+static laves_options make_options(const settings *given) {
+  laves_options options = laves_options_default();
+  options.size = given->size;
+  options.relative_size = given->relative_size;
+  options.tet_target = given->tets;
+  options.vertex_target = given->vertices;
+  options.align = given->alignment.align;
+  memcpy(options.rotation, given->alignment.rotation, sizeof options.rotation);
+  options.improve = !given->no_improve;
+  if (given->window.given) {
+    options.min_dihedral = given->window.values[0];
+    options.max_dihedral = given->window.values[1];
+  }
+  if (given->volume_length >= 0) options.volume_length = given->volume_length;
+  return options;
+}
+
+static bool count_missed(int64_t wished, size_t attained) {
+  return wished > 0 && fabs((double)attained - (double)wished) > count_slack * (double)wished;
+}
+
+/* The library looks at its default window too; only what was wished for on the command line makes the exit code 3. */
+static bool wish_missed(const settings *given, const mesh_run *all) {
+  const bool asked = given->window.given || given->volume_length >= 0;
+  return (asked && all->report.outside_window > 0) || count_missed(given->tets, laves_mesh_tet_count(all->mesh)) ||
+         count_missed(given->vertices, laves_mesh_vertex_count(all->mesh));
+}
+
+static laves_result check_mesh(session *run, mesh_run *all) {
+  const double start = progress_now();
+  laves_result result = laves_check_mesh(run->context, all->mesh, NULL, &all->check, &run->error);
+  result = session_settle(run, result);
+  all->has_check = result == LAVES_OK;
+  all->check_seconds = progress_now() - start;
+  if (all->has_check && !all->check.valid) {
+    summary_faults(&all->check);
+    return session_fail(run, LAVES_ERROR_INTERNAL, "the mesh made is not valid, so it was not written; please report this input");
+  }
+  return result;
+}
+
+static void say_stages(const mesh_run *all) {
+  text_buffer wall, cpu;
+  text_say("  read         %10s", text_seconds(&wall, all->in.seconds));
+  for (int i = 0; i < all->report.stage_count; ++i) {
+    text_say("  %-12s %10s %10s cpu", all->report.stages[i].name, text_seconds(&wall, all->report.stages[i].wall_seconds),
+             text_seconds(&cpu, all->report.stages[i].cpu_seconds));
+  }
+  text_say("  check        %10s", text_seconds(&wall, all->check_seconds));
+  text_say("  write        %10s", text_seconds(&wall, all->plan.seconds));
+}
+
+static void say_mesh(const session *run, const mesh_run *all) {
+  text_buffer tets, vertices, time, memory;
+  summary_input(&all->in, run->given->verbose);
+  text_say("%s, %s, size %.4g, %s, %s", text_plural(&tets, all->check.tets, "tet"),
+           text_plural(&vertices, all->check.vertices, "vertex"), all->report.size,
+           text_seconds(&time, progress_now() - run->start), text_bytes(&memory, session_peak_bytes()));
+  summary_check(&all->check);
+  if (all->report.outside_window > 0) {
+    text_buffer outside;
+    text_say("  %s outside the window %g .. %g%s or below volume-length %g",
+             text_plural(&outside, all->report.outside_window, "tet"), all->options.min_dihedral, all->options.max_dihedral,
+             text_degree(), all->options.volume_length);
+  }
+  if (run->given->verbose) say_stages(all);
+  for (int i = 0; i < all->report.warning_count; ++i) text_warning("%s", all->report.warnings[i]);
+  outputs_say(&all->plan);
+}
+
+static laves_result mesh_steps(session *run, mesh_run *all) {
+  const settings *given = run->given;
+  char fallback[PATH_CAPACITY];
+  input_default_output(given->input, given->format, fallback, sizeof fallback);
+  laves_result result = outputs_plan(run, fallback, given->input, &all->plan);
+  if (result == LAVES_OK) result = input_open(run, given->input, &all->in);
+  if (result != LAVES_OK) return result;
+
+  all->options = make_options(given);
+  result = laves_generate(run->context, all->in.domain, &all->options, &all->mesh, &all->report, &run->error);
+  result = session_settle(run, result);
+  if (result != LAVES_OK && result != LAVES_TARGET_MISSED) return result;
+
+  const bool missed = wish_missed(given, all);
+  result = LAVES_OK;
+  if (session_speaks(run) || given->json) result = check_mesh(run, all);
+  if (result == LAVES_OK) result = outputs_write(run, all->mesh, &all->plan);
+  if (result == LAVES_OK && session_speaks(run)) say_mesh(run, all);
+  return result == LAVES_OK && missed ? LAVES_TARGET_MISSED : result;
+}
+
+/* ---- JSON ---- */
+
+/* A stage that ran twice is one member. */
+static double stage_seconds(const laves_report *report, int first, bool cpu) {
+  double sum = 0;
+  for (int i = first; i < report->stage_count; ++i) {
+    if (strcmp(report->stages[i].name, report->stages[first].name) != 0) continue;
+    sum += cpu ? report->stages[i].cpu_seconds : report->stages[i].wall_seconds;
+  }
+  return sum;
+}
+
+static bool stage_seen_before(const laves_report *report, int stage) {
+  for (int i = 0; i < stage; ++i) {
+    if (strcmp(report->stages[i].name, report->stages[stage].name) == 0) return true;
+  }
+  return false;
+}
+
+static void write_stages(json *out, const laves_report *report, bool cpu) {
+  for (int i = 0; i < report->stage_count; ++i) {
+    if (!stage_seen_before(report, i)) json_number(out, report->stages[i].name, stage_seconds(report, i, cpu));
+  }
+}
+
+static void write_times(json *out, const session *run, const mesh_run *all) {
+  json_open_object(out, "seconds");
+  json_number(out, "read", all->in.seconds);
+  write_stages(out, &all->report, false);
+  json_number(out, "check", all->check_seconds);
+  json_number(out, "write", all->plan.seconds);
+  json_number(out, "total", progress_now() - run->start);
+  json_close(out);
+  json_open_object(out, "cpu_seconds");
+  write_stages(out, &all->report, true);
+  json_close(out);
+}
+
+static void write_options(json *out, const settings *given, const laves_options *options) {
+  static const char *const aligns[] = {"none", "pca", "rotation"};
+  json_open_object(out, "options");
+  json_number(out, "size", given->size > 0 ? given->size : NAN);
+  json_number(out, "relative_size", given->relative_size > 0 ? given->relative_size : NAN);
+  json_number(out, "tets", given->tets > 0 ? (double)given->tets : NAN);
+  json_number(out, "vertices", given->vertices > 0 ? (double)given->vertices : NAN);
+  json_text(out, "align", aligns[options->align]);
+  if (options->align == LAVES_ALIGN_ROTATION) json_numbers(out, "rotation", options->rotation, 9);
+  json_boolean(out, "improve", options->improve);
+  json_numbers(out, "window", (const double[2]){options->min_dihedral, options->max_dihedral}, 2);
+  json_number(out, "volume_length", options->volume_length);
+  json_close(out);
+}
+
+static void write_report(json *out, const mesh_run *all) {
+  const laves_report *report = &all->report;
+  char hash[33];
+  laves_mesh_hash(all->mesh, hash);
+  json_text(out, "hash", hash);
+  json_number(out, "size", report->size);
+  json_number(out, "domain_volume", report->volume);
+  json_integer(out, "lattice_tets", (int64_t)report->lattice_tets);
+  json_integer(out, "snapped_vertices", (int64_t)report->snapped_vertices);
+  json_integer(out, "pinches", (int64_t)report->pinches);
+  json_integer(out, "off_surface", (int64_t)report->off_surface);
+  json_integer(out, "outside_window", (int64_t)report->outside_window);
+}
+
+static void mesh_json(json *out, const session *run, const void *facts) {
+  const mesh_run *all = facts;
+  if (all->in.text) input_write_json(out, "input", &all->in);
+  if (all->options.cookie) write_options(out, run->given, &all->options);
+  if (all->mesh) write_report(out, all);
+  if (all->has_check) summary_check_json(out, &all->check);
+  outputs_write_json(out, &all->plan);
+  if (all->mesh) write_times(out, run, all);
+  json_open_array(out, "warnings");
+  for (int i = 0; i < all->report.warning_count; ++i) json_text(out, NULL, all->report.warnings[i]);
+  json_close(out);
+}
+
+int command_mesh(const settings *given) {
+  session run;
+  mesh_run all = {0};
+  if (!session_open(&run, given)) return laves_result_exit_code(LAVES_ERROR_MEMORY);
+  laves_result result = mesh_steps(&run, &all);
+  session_write_json(&run, &result, mesh_json, &all);
+  laves_mesh_free(all.mesh);
+  laves_domain_free(all.in.domain);
+  return session_close(&run, result);
+}

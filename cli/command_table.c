@@ -1,0 +1,115 @@
+/* The commands of the program and their options, as data.
+ *
+ * One row per option says everything: spelling, argument, kind, range, default, help, and the member of `settings` that it
+ * fills.  From the rows come the parser (options.c), --help, docs/options.md and the dump for tests (help.c), so that none
+ * of them can disagree. */
+#include <math.h>
+#include <string.h>
+
+#include "command.h"
+#include "options.h"
+
+enum { MESH = 1, CHECK = 2, INFO = 4, TILING = 8, ALL = 15 };
+
+const command commands[] = {
+    {"mesh", "INPUT", "fill a solid with nearly regular tetrahedra",
+     "INPUT is a triangle surface (STL, OBJ, PLY, OFF; clean or dirty), a Lua script (.lua), or an expression in quotes.\n"
+     "A name that exists as a file is a file. The mesh goes to every --output; without one, to INPUT's base name with .vtu\n"
+     "in the current folder (mesh.vtu for an expression). Existing outputs are replaced once the new ones are complete.",
+     "laves mesh bunny.obj -o bunny.vtu\n"
+     "laves mesh bunny.obj --tets 500k -o bunny.msh -o bunny.vtu\n"
+     "laves mesh 'sphere(1) - cylinder{r=0.4}' --size 0.05 -o bead.mesh\n",
+     MESH, command_mesh},
+    {"check", "MESH", "say whether a mesh is valid and how good it is",
+     "MESH is a tetrahedral mesh of any program (VTU, Gmsh 2.2 and 4.1, Medit, TetGen). Exit code 0: valid; 2: it cannot be\n"
+     "read; 3: it is not valid, or a window asked for with --window or --volume-length is missed.",
+     "laves check bunny.vtu --surface bunny.obj\n"
+     "laves check other.msh --window 20,150 --list 10\n",
+     CHECK, command_check},
+    {"info", "INPUT", "say what an input is, what is wrong with it, and what meshing will cost",
+     "INPUT is what `laves mesh` takes. Nothing is meshed and nothing is written.", "laves info bunny.obj --tets 1M\n", INFO,
+     command_info},
+    {"tiling", NULL, "show the tiling: Table 1 of the paper, and the mesh of a box",
+     "Measures the tiling over whole periods and sets the figures beside those that the paper prints. With --output, writes\n"
+     "the tiles as a mesh.",
+     "laves tiling\n"
+     "laves tiling --cells 8,8,2 --size 0.1 -o box.vtu\n",
+     TILING, command_tiling},
+};
+const size_t command_count = sizeof commands / sizeof commands[0];
+
+#define MEMBER(name) offsetof(settings, name)
+
+#define IN_SIZE "Size (at most one; none: about 50 thousand tetrahedra)"
+#define IN_TILING "Tiling"
+#define IN_SHAPE "Shape"
+#define IN_CHECK "Check"
+#define IN_FILES "Files"
+#define IN_RUN "Run"
+
+const option option_rows[] = {
+    {"size", 0, MESH | INFO, IN_SIZE, OPTION_REAL, "H", "units of the input", true, 0, INFINITY, NULL, MEMBER(size), 1,
+     "target edge length: the mean edge of the tiling"},
+    {"rel-size", 0, MESH | INFO, IN_SIZE, OPTION_REAL, "F", NULL, true, 0, 0.5, NULL, MEMBER(relative_size), 1,
+     "the same as a fraction of the diagonal of the bounding box"},
+    {"tets", 0, MESH | INFO, IN_SIZE, OPTION_COUNT, "N", NULL, false, 1, 4e9, NULL, MEMBER(tets), 1,
+     "wished number of tetrahedra, met within 3 %; also 50k, 1.5M"},
+    {"vertices", 0, MESH | INFO, IN_SIZE, OPTION_COUNT, "N", NULL, false, 1, 2e9, NULL, MEMBER(vertices), 1,
+     "wished number of vertices, met within 3 %; also 50k, 1.5M"},
+    {"size", 0, TILING, IN_TILING, OPTION_REAL, "H", NULL, true, 0, INFINITY, "1", MEMBER(size), 0,
+     "mean edge length; a cubic cell has side 2.5118 H"},
+    {"cells", 0, TILING, IN_TILING, OPTION_CELLS, "N[,N,N]", "cells", false, 1, 1000, "4", MEMBER(cells), 0,
+     "periods along each axis, 136 tetrahedra in each cell"},
+
+    {"align", 0, MESH, IN_SHAPE, OPTION_ALIGNMENT, "HOW", NULL, false, 0, 0, "none", MEMBER(alignment), 0,
+     "how the lattice lies: none, pca (principal axes), an axis and an angle in degrees as x,y,z,angle, or a rotation matrix as "
+     "9 numbers row by row"},
+    {"no-improve", 0, MESH, IN_SHAPE, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(no_improve), 0,
+     "leave the boundary layer as it was snapped"},
+    {"window", 0, MESH, IN_SHAPE, OPTION_WINDOW, "LO,HI", "degrees", false, 0, 180, "40,125", MEMBER(window), 0,
+     "asked range of every dihedral angle (LO 0..60, HI 80..180); exit code 3 when it is missed"},
+    {"volume-length", 0, MESH, IN_SHAPE, OPTION_REAL, "Q", NULL, false, 0, 0.8, "0.6", MEMBER(volume_length), 0,
+     "asked volume-length ratio of every tetrahedron; exit code 3 when it is missed"},
+    {"surface", 0, CHECK, IN_CHECK, OPTION_WORD, "INPUT", NULL, false, 0, 0, NULL, MEMBER(surface), 0,
+     "the solid that the mesh should fill, as `laves mesh` takes it: distances are measured both ways"},
+    {"window", 0, CHECK, IN_CHECK, OPTION_WINDOW, "LO,HI", "degrees", false, 0, 180, "40,125", MEMBER(window), 0,
+     "range for every dihedral angle (LO 0..60, HI 80..180); when given, exit code 3 if it is missed"},
+    {"volume-length", 0, CHECK, IN_CHECK, OPTION_REAL, "Q", NULL, false, 0, 0.8, "0.6", MEMBER(volume_length), 0,
+     "lowest volume-length ratio; when given, exit code 3 if it is missed"},
+    {"list", 0, CHECK, IN_CHECK, OPTION_COUNT, "N", "places", false, 0, 100000, "5", MEMBER(list), 0,
+     "how many of the worst places to list"},
+
+    {"output", 'o', MESH, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, 0, "INPUT's base name and .vtu, here", MEMBER(outputs),
+     0, "where the mesh goes; repeat it for several formats"},
+    {"output", 'o', TILING, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, 0, NULL, MEMBER(outputs), 0,
+     "write the tiling as a mesh; repeat it for several formats"},
+    {"format", 0, MESH | TILING, IN_FILES, OPTION_FORMAT, "NAME", NULL, false, 0, 0, "from the extension", MEMBER(format), 0,
+     "format of the one output: "},
+    {"ascii", 0, MESH | TILING, IN_FILES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(ascii), 0,
+     "text instead of binary, where the format has both"},
+    {"compress", 0, MESH | TILING, IN_FILES, OPTION_COUNT, "N", NULL, false, 0, 9, "1", MEMBER(compress), 0,
+     "compression of VTU, 0 none to 9 smallest"},
+    {"boundary", 0, MESH, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(boundary), 0,
+     "also write the boundary surface (.stl, .obj, .ply, .off)"},
+    {"json", 0, ALL, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(json), 0,
+     "write all facts as JSON (docs/json.md); - is the standard output"},
+
+    {"threads", 0, MESH | CHECK | INFO, IN_RUN, OPTION_COUNT, "N", NULL, false, 1, 4096, "one per core", MEMBER(threads), 0,
+     "threads to use; the mesh never depends on it"},
+    {"memory", 0, ALL, IN_RUN, OPTION_BYTES, "SIZE", "bytes", false, 1, 1e18, "no limit", MEMBER(memory), 0,
+     "most memory to hold, such as 500M or 2G (powers of 1024); exit code 4 when it is not enough"},
+    {"quiet", 'q', ALL, IN_RUN, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(quiet), 0, "say nothing but errors"},
+    {"verbose", 'v', ALL, IN_RUN, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(verbose), 0,
+     "say more: time of each stage, all defects of the input"},
+    {"help", 'h', ALL, IN_RUN, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, 0, 0, "this text"},
+};
+
+_Static_assert(sizeof option_rows / sizeof option_rows[0] <= OPTION_CAPACITY, "raise OPTION_CAPACITY");
+const size_t option_count = sizeof option_rows / sizeof option_rows[0];
+
+const command *command_find(const char *name) {
+  for (size_t i = 0; i < command_count; ++i) {
+    if (strcmp(commands[i].name, name) == 0) return &commands[i];
+  }
+  return NULL;
+}

@@ -1,0 +1,21 @@
+/* What a mesh will cost before it is made: tets, vertices, memory and time from volume, area and size. */
+#ifndef LAVES_CLI_ESTIMATE_H
+#define LAVES_CLI_ESTIMATE_H
+
+#include "input.h"
+
+typedef struct estimate {
+  double volume, area; /* of the domain; sampled where the input does not say */
+  bool sampled;
+  double size;
+  double tets, vertices;
+  double bytes, cpu_seconds; /* of meshing, rough */
+} estimate;
+
+/* @param given  the size options; none: about 50 thousand tets
+ * @return false when the domain is empty as far as the samples tell */
+bool estimate_make(const input *in, const settings *given, estimate *result);
+
+void estimate_write_json(json *out, const estimate *result);
+
+#endif

@@ -1,0 +1,28 @@
+/* INPUT on the command line: a surface file, a Lua script, or an expression. */
+#ifndef LAVES_CLI_INPUT_H
+#define LAVES_CLI_INPUT_H
+
+#include <stddef.h>
+
+#include "session.h"
+
+typedef struct input {
+  const char *text; /* as given */
+  laves_domain *domain;
+  laves_domain_info info;
+  double seconds; /* to read it */
+} input;
+
+/* Opens what the words mean. Free the domain of `in` whatever the result. */
+laves_result input_open(session *run, const char *words, input *in);
+
+/* Writes the name that a mesh of this input gets by default: base name and extension of the format. */
+void input_default_output(const char *words, laves_format format, char *path, size_t size);
+
+/* The length of the diagonal of the input's box. */
+double input_diagonal(const laves_domain_info *info);
+
+/* Writes the member "input". */
+void input_write_json(json *out, const char *key, const input *in);
+
+#endif

@@ -1,0 +1,117 @@
+/* The commands of the program and their options: one table that parses, helps, corrects and documents. */
+#ifndef LAVES_CLI_OPTIONS_H
+#define LAVES_CLI_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "laves/laves.h"
+
+enum { OUTPUT_CAPACITY = 8, OPTION_CAPACITY = 64 /* rows of the table */ };
+
+/* A list of values of one option that may be repeated. */
+typedef struct option_texts {
+  const char *items[OUTPUT_CAPACITY];
+  int count;
+} option_texts;
+
+/* An option with several numbers. */
+typedef struct option_numbers {
+  bool given;
+  double values[9];
+} option_numbers;
+
+typedef struct option_alignment {
+  laves_align align;
+  double rotation[9];
+} option_alignment;
+
+/* What the command line said; members of options that were not given hold the table's defaults. */
+typedef struct settings {
+  const char *command;
+  const char *input; /* NULL where the command takes none */
+  option_texts outputs;
+  const char *boundary, *json, *surface; /* NULL: not given */
+  double size, relative_size;            /* 0: not given */
+  int64_t tets, vertices;                /* 0: not given */
+  option_alignment alignment;
+  bool no_improve, ascii, quiet, verbose;
+  option_numbers window; /* lowest, highest dihedral angle */
+  double volume_length;  /* negative: not given */
+  laves_format format;
+  int64_t compress, threads, list;
+  int64_t memory; /* bytes; 0: no limit */
+  option_numbers cells;
+} settings;
+
+typedef enum option_kind {
+  OPTION_FLAG,      /* bool */
+  OPTION_WORD,      /* const char * */
+  OPTION_WORDS,     /* option_texts */
+  OPTION_REAL,      /* double */
+  OPTION_COUNT,     /* int64_t; 50k, 1.5M */
+  OPTION_BYTES,     /* int64_t; 500M, 2G, powers of 1024 */
+  OPTION_WINDOW,    /* option_numbers, two */
+  OPTION_CELLS,     /* option_numbers, one or three */
+  OPTION_ALIGNMENT, /* option_alignment */
+  OPTION_FORMAT,    /* laves_format */
+} option_kind;
+
+/* One row of the table. */
+typedef struct option {
+  const char *name; /* without dashes */
+  char letter;      /* or 0 */
+  unsigned commands;
+  const char *section;
+  option_kind kind;
+  const char *argument; /* NULL for flags */
+  const char *unit;     /* NULL: none */
+  bool above;           /* the lowest value itself is not allowed */
+  double low, high;
+  const char *standard; /* the default in words; NULL: none or off */
+  size_t member;        /* offset in settings */
+  int group;            /* of options that exclude one another; 0: none */
+  const char *help;
+} option;
+
+typedef struct command {
+  const char *name;
+  const char *argument; /* of the one thing that is not an option, or NULL */
+  const char *summary;  /* one line */
+  const char *description;
+  const char *examples; /* lines, each ends with a line break */
+  unsigned bit;         /* in option.commands */
+  int (*run)(const settings *given);
+} command;
+
+extern const command commands[];
+extern const size_t command_count;
+extern const option option_rows[];
+extern const size_t option_count;
+
+const command *command_find(const char *name);
+
+typedef enum options_outcome { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_WRONG } options_outcome;
+
+/* Reads the words after the command's name. OPTIONS_WRONG: what is wrong has been said on stderr. */
+options_outcome options_parse(const command *about, int count, char **words, settings *given);
+
+/* ---- words that parser and help share ---- */
+
+/* "above 0", "0..9", "1 or more"; returns text. */
+const char *option_range(const option *row, char *text, size_t size);
+/* The names of all formats with commas between. */
+void option_format_names(char *text, size_t size);
+
+/* ---- help ---- */
+
+void options_print_help(FILE *file, const command *about);
+void options_print_overview(FILE *file);
+/* docs/options.md */
+void options_print_markdown(FILE *file);
+/* The whole table as JSON. */
+void options_print_json(FILE *file);
+
+#endif

@@ -1,0 +1,144 @@
+/* Where a mesh goes.  A missing folder or an unknown extension is found before meshing, not after an hour of it. */
+#include "output.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "text.h"
+
+static laves_result check_folder(session *run, const char *path) {
+  char folder[PATH_CAPACITY] = ".";
+  const char *slash = strrchr(path, '/');
+  if (slash) snprintf(folder, sizeof folder, "%.*s", slash == path ? 1 : (int)(slash - path), path);
+  struct stat status;
+  if (stat(folder, &status) != 0) {
+    return session_fail(run, LAVES_ERROR_WRITE, "cannot write '%.200s': there is no folder '%.200s'", path, folder);
+  }
+  if (!S_ISDIR(status.st_mode)) {
+    return session_fail(run, LAVES_ERROR_WRITE, "cannot write '%.200s': '%.200s' is not a folder", path, folder);
+  }
+  if (access(folder, W_OK | X_OK) != 0) {
+    return session_fail(run, LAVES_ERROR_WRITE, "cannot write '%.200s': no permission to write in '%.200s'", path, folder);
+  }
+  return LAVES_OK;
+}
+
+/* Meshes are renamed into place, which must not replace a device; JSON may go to one. */
+static laves_result check_target(session *run, const char *path, const char *source, bool may_be_device) {
+  if (strlen(path) + 16 > PATH_CAPACITY) return session_fail(run, LAVES_ERROR_WRITE, "the name of an output file is too long");
+  struct stat target, input;
+  if (stat(path, &target) != 0) return check_folder(run, path);
+  if (S_ISDIR(target.st_mode)) return session_fail(run, LAVES_ERROR_WRITE, "cannot write '%.200s': it is a folder", path);
+  if (!S_ISREG(target.st_mode)) {
+    if (may_be_device) return LAVES_OK;
+    return session_fail(run, LAVES_ERROR_WRITE, "cannot write '%.200s': it is not an ordinary file", path);
+  }
+  if (source && stat(source, &input) == 0 && input.st_dev == target.st_dev && input.st_ino == target.st_ino) {
+    return session_fail(run, LAVES_ERROR_OPTION, "'%.200s' is the input and would be overwritten; name another file", path);
+  }
+  return check_folder(run, path);
+}
+
+static laves_result add(session *run, const char *path, bool surface_only, outputs *plan) {
+  const laves_format asked = surface_only ? LAVES_FORMAT_AUTO : run->given->format;
+  const laves_format format = asked != LAVES_FORMAT_AUTO ? asked : laves_format_from_path(path);
+  if (strcmp(path, "-") == 0) {
+    return session_fail(run, LAVES_ERROR_OPTION, "a mesh cannot go to the standard output; name a file");
+  }
+  if (format == LAVES_FORMAT_COUNT) {
+    return session_fail(
+        run, LAVES_ERROR_OPTION, "the extension of '%.200s' is no format known; use %s", path,
+        surface_only ? ".stl, .obj, .ply or .off" : ".vtu, .msh, .mesh or another of docs/formats.md, or --format");
+  }
+  if (surface_only && format < LAVES_FORMAT_STL) {
+    return session_fail(run, LAVES_ERROR_OPTION, "'--boundary' writes a surface: .stl, .obj, .ply or .off, not '%.200s'", path);
+  }
+  for (int i = 0; i < plan->count; ++i) {
+    if (strcmp(plan->items[i].path, path) == 0) return session_fail(run, LAVES_ERROR_OPTION, "'%.200s' is named twice", path);
+  }
+  plan->items[plan->count++] = (output){.path = path, .format = format};
+  return LAVES_OK;
+}
+
+laves_result outputs_check_json(session *run, const char *source) {
+  const char *path = run->given->json;
+  if (!path || strcmp(path, "-") == 0) return LAVES_OK;
+  const laves_result result = check_target(run, path, source, true);
+  run->json_refused = result != LAVES_OK;
+  return result;
+}
+
+laves_result outputs_plan(session *run, const char *fallback, const char *source, outputs *plan) {
+  *plan = (outputs){0};
+  const option_texts *named = &run->given->outputs;
+  laves_result result = outputs_check_json(run, source);
+  for (int i = 0; result == LAVES_OK && i < named->count; ++i) result = add(run, named->items[i], false, plan);
+  if (named->count == 0 && fallback) result = add(run, fallback, false, plan);
+  if (result == LAVES_OK && run->given->boundary) result = add(run, run->given->boundary, true, plan);
+  for (int i = 0; result == LAVES_OK && i < plan->count; ++i) result = check_target(run, plan->items[i].path, source, false);
+  return result;
+}
+
+static double file_bytes(const char *path) {
+  struct stat status;
+  return stat(path, &status) == 0 ? (double)status.st_size : 0;
+}
+
+/* TetGen's three files share a base name. */
+static double written_bytes(const output *item) {
+  if (item->format != LAVES_FORMAT_TETGEN) return file_bytes(item->path);
+  static const char *const extensions[] = {".node", ".ele", ".face"};
+  const char *dot = strrchr(item->path, '.');
+  int base = (int)strlen(item->path);
+  for (int i = 0; dot && i < 3; ++i) {
+    if (strcmp(dot, extensions[i]) == 0) base = (int)(dot - item->path);
+  }
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    char path[PATH_CAPACITY + 8];
+    snprintf(path, sizeof path, "%.*s%s", base, item->path, extensions[i]);
+    sum += file_bytes(path);
+  }
+  return sum;
+}
+
+laves_result outputs_write(session *run, const laves_mesh *mesh, outputs *plan) {
+  const double start = progress_now();
+  laves_result result = LAVES_OK;
+  for (int i = 0; result == LAVES_OK && i < plan->count; ++i) {
+    output *item = &plan->items[i];
+    laves_write_options options = laves_write_options_default();
+    options.format = item->format;
+    options.ascii = run->given->ascii;
+    options.compression = (int)run->given->compress;
+    result = session_settle(run, LAVES_OK);
+    if (result == LAVES_OK) result = laves_mesh_write(run->context, mesh, item->path, &options, &run->error);
+    progress_clear(&run->bar);
+    if (result == LAVES_OK) item->bytes = written_bytes(item);
+  }
+  plan->seconds = progress_now() - start;
+  return result;
+}
+
+void outputs_say(const outputs *plan) {
+  for (int i = 0; i < plan->count; ++i) {
+    text_buffer bytes;
+    text_say("wrote %s (%s, %s)", plan->items[i].path, laves_format_name(plan->items[i].format),
+             text_bytes(&bytes, plan->items[i].bytes));
+  }
+}
+
+void outputs_write_json(json *out, const outputs *plan) {
+  json_open_array(out, "outputs");
+  for (int i = 0; i < plan->count; ++i) {
+    if (plan->items[i].bytes == 0) continue;
+    json_open_object(out, NULL);
+    json_text(out, "path", plan->items[i].path);
+    json_text(out, "format", laves_format_name(plan->items[i].format));
+    json_number(out, "bytes", plan->items[i].bytes);
+    json_close(out);
+  }
+  json_close(out);
+}
