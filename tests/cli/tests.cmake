@@ -1,0 +1,11 @@
+# Each tests/cli/*.case is a CTest test: the program by example, run by run.py.
+find_package(Python3 COMPONENTS Interpreter)
+if(TARGET laves-program AND Python3_FOUND)
+  file(GLOB LAVES_CLI_CASES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cli/*.case)
+  foreach(case ${LAVES_CLI_CASES})
+    get_filename_component(name ${case} NAME_WE)
+    add_test(NAME cli/${name}
+      COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/cli/run.py --program $<TARGET_FILE:laves-program> ${case})
+    set_tests_properties(cli/${name} PROPERTIES LABELS cli)
+  endforeach()
+endif()
