@@ -8,5 +8,6 @@ int command_mesh(const settings *given);
 int command_check(const settings *given);
 int command_info(const settings *given);
 int command_tiling(const settings *given);
+int command_view(const settings *given);
 
 #endif

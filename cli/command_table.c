@@ -9,7 +9,7 @@
 #include "command.h"
 #include "options.h"
 
-enum { MESH = 1, CHECK = 2, INFO = 4, TILING = 8, ALL = 15 };
+enum { MESH = 1, CHECK = 2, INFO = 4, TILING = 8, VIEW = 16, DATA = 15, ALL = 31 };
 
 const command commands[] = {
     {"mesh", "INPUT", "fill a solid with nearly regular tetrahedra",
@@ -35,6 +35,12 @@ const command commands[] = {
      "laves tiling\n"
      "laves tiling --cells 8,8,2 --size 0.1 -o box.vtu\n",
      TILING, command_tiling},
+    {"view", "MESH", "draw a mesh, whole or cut open, into a PNG file",
+     "MESH is what `laves check` takes. With --cut, whole tetrahedra on one side of a plane are left out, never halves, so the\n"
+     "picture shows the elements of the inside; their faces have a colour of their own.",
+     "laves view bunny.vtu -o bunny.png --up y\n"
+     "laves view bunny.vtu -o inside.png --cut x --color dihedral --size 1600x1200\n",
+     VIEW, command_view},
 };
 const size_t command_count = sizeof commands / sizeof commands[0];
 
@@ -44,6 +50,7 @@ const size_t command_count = sizeof commands / sizeof commands[0];
 #define IN_TILING "Tiling"
 #define IN_SHAPE "Shape"
 #define IN_CHECK "Check"
+#define IN_PICTURE "Picture"
 #define IN_FILES "Files"
 #define IN_RUN "Run"
 
@@ -79,10 +86,28 @@ const option option_rows[] = {
     {"list", 0, CHECK, IN_CHECK, OPTION_COUNT, "N", "places", false, 0, 100000, "5", MEMBER(list), 0,
      "how many of the worst places to list"},
 
+    {"cut", 0, VIEW, IN_PICTURE, OPTION_WORD, "PLANE", NULL, false, 0, 0, NULL, MEMBER(cut), 0,
+     "leave out what lies in front of a plane: x, y or z through the middle, or a,b,c,d for what has a corner with "
+     "a x + b y + c z > d"},
+    {"color", 0, VIEW, IN_PICTURE, OPTION_WORD, "BY", NULL, false, 0, 0, "class", MEMBER(color), 0,
+     "class: surface and inside; dihedral or quality: from blue (as the tiling's) through amber to red (flat), by the dihedral "
+     "angle furthest from the tiling's or by the volume-length ratio"},
+    {"view", 0, VIEW, IN_PICTURE, OPTION_WORD, "AZ,EL", "degrees", false, 0, 0, "30,25", MEMBER(view), 0,
+     "where the viewer stands: around the upward axis, and above the horizon"},
+    {"up", 0, VIEW, IN_PICTURE, OPTION_WORD, "AXIS", NULL, false, 0, 0, "z", MEMBER(up), 0, "upward axis: x, y or z"},
+    {"size", 0, VIEW, IN_PICTURE, OPTION_WORD, "WxH", "pixels", false, 0, 0, "1200x900", MEMBER(pixels), 0,
+     "width and height, 16 to 16384 each"},
+    {"background", 0, VIEW, IN_PICTURE, OPTION_WORD, "HOW", NULL, false, 0, 0, "white", MEMBER(background), 0,
+     "white, transparent or dark"},
+    {"lines", 0, VIEW, IN_PICTURE, OPTION_REAL, "W", "pixels", false, 0, 20, "0.9", MEMBER(lines), 0,
+     "width of the edges; 0: none"},
+
     {"output", 'o', MESH, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, 0, "INPUT's base name and .vtu, here", MEMBER(outputs),
      0, "where the mesh goes; repeat it for several formats"},
     {"output", 'o', TILING, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, 0, NULL, MEMBER(outputs), 0,
      "write the tiling as a mesh; repeat it for several formats"},
+    {"output", 'o', VIEW, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, 0, NULL, MEMBER(outputs), 0,
+     "where the picture goes (PNG); needed"},
     {"format", 0, MESH | TILING, IN_FILES, OPTION_FORMAT, "NAME", NULL, false, 0, 0, "from the extension", MEMBER(format), 0,
      "format of the one output: "},
     {"ascii", 0, MESH | TILING, IN_FILES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(ascii), 0,
@@ -91,7 +116,7 @@ const option option_rows[] = {
      "compression of VTU, 0 none to 9 smallest"},
     {"boundary", 0, MESH, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(boundary), 0,
      "also write the boundary surface (.stl, .obj, .ply, .off)"},
-    {"json", 0, ALL, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(json), 0,
+    {"json", 0, DATA, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(json), 0,
      "write all facts as JSON (docs/json.md); - is the standard output"},
 
     {"threads", 0, MESH | CHECK | INFO, IN_RUN, OPTION_COUNT, "N", NULL, false, 1, 4096, "one per core", MEMBER(threads), 0,

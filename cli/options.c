@@ -346,7 +346,16 @@ static options_outcome take_next(parser *state, bool *options_ended) {
 }
 
 options_outcome options_parse(const command *about, int count, char **words, settings *given) {
-  *given = (settings){.command = about->name, .volume_length = -1, .compress = 1, .list = 5};
+  *given = (settings){.command = about->name,
+                      .volume_length = -1,
+                      .compress = 1,
+                      .list = 5,
+                      .color = "class",
+                      .view = "30,25",
+                      .up = "z",
+                      .pixels = "1200x900",
+                      .background = "white",
+                      .lines = 0.9};
   given->window.values[0] = 40;
   given->window.values[1] = 125;
   for (int i = 0; i < 3; ++i) given->cells.values[i] = 4;

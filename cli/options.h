@@ -44,6 +44,9 @@ typedef struct settings {
   int64_t compress, threads, list;
   int64_t memory; /* bytes; 0: no limit */
   option_numbers cells;
+  const char *cut; /* NULL: not given */
+  const char *color, *view, *up, *pixels, *background;
+  double lines; /* pixels */
 } settings;
 
 typedef enum option_kind {

@@ -61,6 +61,7 @@ static slope value_slope(const raster_triangle *t, const slope edges[3], const d
 /* How dark the lines of a triangle are, 0..1: they fade where it is seen edge on or is hardly wider than its lines, so that
  * fine meshes and silhouettes don't turn black. */
 static double line_strength(const raster_triangle *t, const slope edges[3]) {
+  if (!(t->edge_width > 0)) return 0;
   double altitude = INFINITY;
   for (int i = 0; i < 3; i++) {
     altitude = fmin(altitude, slope_at(edges[i], t->x[i], t->y[i]));
