@@ -1,0 +1,24 @@
+#!/bin/sh
+# Draws docs/images anew: tools/make_pictures.sh [PROGRAM]
+set -eu
+cd "$(dirname "$0")/.."
+program=${1:-build/laves}
+meshes=$(mktemp -d)
+trap 'rm -rf "$meshes"' EXIT
+
+# draw PICTURE INPUT TETS OPTIONS...: meshes a bundled input and draws it.
+draw() {
+  picture=$1 input=$2 tets=$3
+  shift 3
+  mesh=$meshes/${input%.*}-$tets.vtu
+  [ -e "$mesh" ] || "$program" mesh "demo/$input" --tets "$tets" -q -o "$mesh"
+  "$program" view "$mesh" "$@" -o "docs/images/$picture.png"
+}
+
+draw octopus octopus.lua 30k --view 25,30 --size 640x480
+draw octopus-cut octopus.lua 30k --view 25,30 --size 640x480 --cut y
+draw knot knot.ply 12k --view 20,50 --size 560x420
+draw socket-cut socket.lua 60k --view 50,35 --size 560x420 --cut x
+draw gyroid gyroid.lua 40k --view 30,25 --size 560x420
+draw section boolean.lua 20k --view 35,22 --size 720x540 --cut x
+draw angles octopus.lua 30k --view 15,12 --size 720x540 --cut x --color dihedral
