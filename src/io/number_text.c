@@ -56,7 +56,7 @@ static uint64_t round_to_odd(const uint64_t power[2], uint64_t c) {
   return (uint64_t)(high >> 64) | ((uint64_t)high > 1);
 }
 
-/* [giulietti2020], section 9: floor of log10(2^q), of log10(3/4 2^q), and of log2(10^e), exact for all doubles. */
+/* [giulietti2020]: floor of log10(2^q), of log10(3/4 2^q), and of log2(10^e), exact for all doubles. */
 static int floor_log10_pow2(int q) { return (q * 1262611) >> 22; }
 static int floor_log10_three_quarters_pow2(int q) { return (q * 1262611 - 524031) >> 22; }
 static int floor_log2_pow10(int e) { return (e * 1741647) >> 19; }

@@ -1,5 +1,5 @@
 /* Medit's .mesh (text) and .meshb (binary, versions 1 to 4, either byte order): vertices, tetrahedra and triangles with
- * their references; everything else is skipped. Source: see write_medit.c. */
+ * their references, straight or of second order; everything else is skipped. Source: see write_medit.c. */
 #include "io/binary.h"
 #include "io/mesh_input.h"
 #include "io/scan.h"
@@ -9,10 +9,23 @@ static int32_t clamp(int64_t value) { return value < INT32_MIN ? INT32_MIN : val
 /* Numbers from 1 become indices from 0; what does not fit becomes -1 and is refused later. */
 static int32_t index_of(int64_t number) { return number >= 1 && number <= INT32_MAX ? (int32_t)(number - 1) : -1; }
 
-static laves_result add_element(laves__mesh_input *input, int corner_count, const int64_t row[5], laves_error *error) {
+/* Elements by their nodes, of which the corners come first. */
+typedef struct shape {
+  const char *keyword; /* of the text form */
+  int32_t key;         /* of the binary form */
+  int corner_count, node_count;
+} shape;
+static const shape shapes[] = {
+    {"Tetrahedra", 8, 4, 4}, {"Triangles", 6, 3, 3}, {"TetrahedraP2", 30, 4, 10}, {"TrianglesP2", 24, 3, 6}};
+enum { NODES_MAX = 10 };
+
+/* row: the nodes, then the reference. */
+static laves_result add_element(laves__mesh_input *input, const shape *s, const int64_t row[NODES_MAX + 1], laves_error *error) {
   int32_t corners[4];
+  const int corner_count = s->corner_count;
   for (int j = 0; j < corner_count; j++) corners[j] = index_of(row[j]);
-  const int32_t reference = clamp(row[corner_count]);
+  const int32_t reference = clamp(row[s->node_count]);
+  input->higher_order |= s->node_count > corner_count;
   const bool enough = corner_count == 4 ? laves__mesh_input_add_tet(input, corners, reference)
                                         : laves__mesh_input_add_face(input, corners, reference);
   return enough ? LAVES_OK : laves__fail_memory(input->context, error);
@@ -42,15 +55,15 @@ static laves_result read_vertices(laves__mesh_input *input, laves__scan *scan, l
   return result;
 }
 
-static laves_result read_elements(laves__mesh_input *input, laves__scan *scan, int corner_count, laves_error *error) {
+static laves_result read_elements(laves__mesh_input *input, laves__scan *scan, const shape *s, laves_error *error) {
   size_t count;
   laves_result result = read_count(scan, &count, error);
   for (size_t i = 0; i < count && result == LAVES_OK; i++) {
-    int64_t row[5];
-    for (int j = 0; j <= corner_count; j++)
+    int64_t row[NODES_MAX + 1];
+    for (int j = 0; j <= s->node_count; j++)
       if (!laves__scan_space(scan) || !laves__scan_int(scan, &row[j]))
-        return laves__scan_fail_expected(scan, error, j < corner_count ? "a vertex number" : "an element's reference");
-    result = add_element(input, corner_count, row, error);
+        return laves__scan_fail_expected(scan, error, j < s->node_count ? "a vertex number" : "an element's reference");
+    result = add_element(input, s, row, error);
     if (pause_due(i) && laves__mesh_input_cancelled(input, scan->at)) return laves__fail_cancelled(error);
   }
   return result;
@@ -74,12 +87,11 @@ laves_result laves__read_medit_text(laves__mesh_input *input, laves_error *error
       result = check_dimension(&scan, error);
     else if (laves__word_is(word, "Vertices"))
       result = read_vertices(input, &scan, error);
-    else if (laves__word_is(word, "Tetrahedra"))
-      result = read_elements(input, &scan, 4, error);
-    else if (laves__word_is(word, "Triangles"))
-      result = read_elements(input, &scan, 3, error);
     else if (laves__word_is(word, "End"))
       break;
+    else
+      for (size_t i = 0; i < LAVES__COUNT_OF(shapes); i++)
+        if (laves__word_is(word, shapes[i].keyword)) result = read_elements(input, &scan, &shapes[i], error);
     /* Other keywords and their numbers pass word by word. */
   }
   return result;
@@ -87,7 +99,7 @@ laves_result laves__read_medit_text(laves__mesh_input *input, laves_error *error
 
 /* ---- binary ---- */
 
-enum { KEY_DIMENSION = 3, KEY_VERTICES = 4, KEY_TRIANGLES = 6, KEY_TETS = 8, KEY_END = 54 };
+enum { KEY_DIMENSION = 3, KEY_VERTICES = 4, KEY_END = 54 };
 
 typedef struct binary_file {
   laves__mesh_input *input;
@@ -139,35 +151,32 @@ static laves_result read_binary_vertices(binary_file *f, laves_error *error) {
   return LAVES_OK;
 }
 
-static laves_result read_binary_elements(binary_file *f, int corner_count, laves_error *error) {
-  int64_t count, row[5];
+static laves_result read_binary_elements(binary_file *f, const shape *s, laves_error *error) {
+  int64_t count, row[NODES_MAX + 1];
   if (!next_integer(f, &count)) return fail_short(f, error, "the number of elements");
   laves_result result = LAVES_OK;
   for (int64_t i = 0; i < count && result == LAVES_OK; i++) {
-    for (int j = 0; j <= corner_count; j++)
+    for (int j = 0; j <= s->node_count; j++)
       if (!next_integer(f, &row[j])) return fail_short(f, error, "an element");
-    result = add_element(f->input, corner_count, row, error);
+    result = add_element(f->input, s, row, error);
     if (pause_due((size_t)i) && laves__mesh_input_cancelled(f->input, f->b.at)) return laves__fail_cancelled(error);
   }
   return result;
 }
 
-static laves_result read_block(binary_file *f, int32_t key, laves_error *error) {
+static laves_result check_binary_dimension(binary_file *f, laves_error *error) {
   int32_t dimension;
-  switch (key) {
-    case KEY_DIMENSION:
-      if (!laves__binary_i32(&f->b, &dimension)) return fail_short(f, error, "the dimension");
-      if (dimension == 3) return LAVES_OK;
-      return laves__mesh_input_fail(f->input, error, "the dimension is %ld; it must be 3", (long)dimension);
-    case KEY_VERTICES:
-      return read_binary_vertices(f, error);
-    case KEY_TETS:
-      return read_binary_elements(f, 4, error);
-    case KEY_TRIANGLES:
-      return read_binary_elements(f, 3, error);
-    default:
-      return LAVES_OK;
-  }
+  if (!laves__binary_i32(&f->b, &dimension)) return fail_short(f, error, "the dimension");
+  if (dimension == 3) return LAVES_OK;
+  return laves__mesh_input_fail(f->input, error, "the dimension is %ld; it must be 3", (long)dimension);
+}
+
+static laves_result read_block(binary_file *f, int32_t key, laves_error *error) {
+  if (key == KEY_DIMENSION) return check_binary_dimension(f, error);
+  if (key == KEY_VERTICES) return read_binary_vertices(f, error);
+  for (size_t i = 0; i < LAVES__COUNT_OF(shapes); i++)
+    if (key == shapes[i].key) return read_binary_elements(f, &shapes[i], error);
+  return LAVES_OK;
 }
 
 laves_result laves__read_medit_binary(laves__mesh_input *input, laves_error *error) {

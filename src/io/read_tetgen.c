@@ -86,6 +86,17 @@ laves_result laves__read_tetgen_ele(laves__mesh_input *input, int64_t base, lave
   return result;
 }
 
+/* The marker stands behind the three corners, and in meshes of ten-node tets behind three more nodes, which the head of
+ * the file does not tell. */
+static bool read_marker(const laves__mesh_input *input, laves__scan *scan, int64_t *marker) {
+  int64_t further[4];
+  int count = 0;
+  while (count < 4 && laves__scan_int(scan, &further[count])) count++;
+  if (count == 0) return false;
+  *marker = input->higher_order && count == 4 ? further[3] : further[0];
+  return true;
+}
+
 laves_result laves__read_tetgen_face(laves__mesh_input *input, int64_t base, laves_error *error) {
   laves__scan scan = begin_scan(input);
   int64_t head[4];
@@ -95,7 +106,7 @@ laves_result laves__read_tetgen_face(laves__mesh_input *input, int64_t base, lav
     int64_t marker = 1;
     result = read_corners(&scan, base, 3, corners, error);
     if (result != LAVES_OK) return result;
-    if (head[1] > 0 && !laves__scan_int(&scan, &marker)) return laves__scan_fail_expected(&scan, error, "a marker");
+    if (head[1] > 0 && !read_marker(input, &scan, &marker)) return laves__scan_fail_expected(&scan, error, "a marker");
     if (marker < INT32_MIN || marker > INT32_MAX) return laves__scan_fail(&scan, error, "the marker is too large");
     if (!laves__mesh_input_add_face(input, corners, (int32_t)marker)) return laves__fail_memory(input->context, error);
     laves__scan_next_line(&scan);
