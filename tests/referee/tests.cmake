@@ -1,10 +1,14 @@
-# Other programs read every format that laves writes and count and measure what they find. Skipped, loudly, where a
-# program is missing.
-add_executable(write_formats referee/write_formats.c ${LAVES_FIXTURES})
-target_include_directories(write_formats PRIVATE ${PROJECT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
-target_link_libraries(write_formats PRIVATE laves PkgConfig::CMOCKA)
-foreach(referee meshio gmsh)
-  add_test(NAME referee/${referee}
+# Other programs read every format that laves writes and count and measure what they find, and laves reads what they write.
+# Skipped, loudly, where a program is missing.
+foreach(program write_formats count_mesh)
+  add_executable(${program} referee/${program}.c ${LAVES_FIXTURES})
+  target_include_directories(${program} PRIVATE ${PROJECT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
+  target_link_libraries(${program} PRIVATE laves PkgConfig::CMOCKA)
+endforeach()
+foreach(referee meshio gmsh tetgen)
+  add_test(NAME referee/read_with_${referee}
     COMMAND ${CMAKE_CURRENT_LIST_DIR}/read_with_${referee} $<TARGET_FILE:write_formats>)
-  set_tests_properties(referee/${referee} PROPERTIES LABELS referee SKIP_RETURN_CODE 77)
+  add_test(NAME referee/written_by_${referee}
+    COMMAND ${CMAKE_CURRENT_LIST_DIR}/written_by_${referee} $<TARGET_FILE:count_mesh>)
+  set_tests_properties(referee/read_with_${referee} referee/written_by_${referee} PROPERTIES LABELS referee SKIP_RETURN_CODE 77)
 endforeach()
