@@ -20,7 +20,8 @@ typedef struct carving {
   const laves__frame *frame;
   laves__lattice *lattice;
   undecided list;
-  int8_t *cell_side; /* [list.count][LAVES__BRICK_CELLS] */
+  int8_t *cell_side;   /* [list.count][LAVES__BRICK_CELLS] */
+  size_t first_record; /* of those to evaluate */
   bool out_of_memory;
 } carving;
 
@@ -166,7 +167,93 @@ static void evaluate_record(const laves__frame *frame, laves__record *r) {
 static void evaluate_records(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   carving *c = user;
-  for (size_t i = begin; i < end; i++) evaluate_record(c->frame, &c->lattice->record[i]);
+  for (size_t i = begin; i < end; i++) evaluate_record(c->frame, &c->lattice->record[c->first_record + i]);
+}
+
+/* ---- sealing: what an inconsistent oracle may leave open ---- */
+
+/* Whether all bricks around a slot, and itself, are wholly inside. */
+static bool is_deep_brick(const laves__lattice *l, const int32_t b[3]) {
+  for (int dz = -1; dz <= 1; dz++)
+    for (int dy = -1; dy <= 1; dy++)
+      for (int dx = -1; dx <= 1; dx++) {
+        const int32_t n[3] = {b[0] + dx, b[1] + dy, b[2] + dz};
+        for (int axis = 0; axis < 3; axis++)
+          if (n[axis] < 0 || n[axis] >= l->bricks[axis]) return false;
+        if (l->directory[slot_of(l, n)] != LAVES__IN) return false;
+      }
+  return true;
+}
+
+/* Records for an inside cell and the outside cells that touch it. */
+static bool seal_cell(laves__lattice *l, int32_t x, int32_t y, int32_t z) {
+  if (laves__lattice_cell(l, x, y, z) != LAVES__IN) return true;
+  bool touches = false;
+  for (int k = 0; k < 27; k++) {
+    const int32_t n[3] = {x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1};
+    if (laves__lattice_cell(l, n[0], n[1], n[2]) != LAVES__OUT) continue;
+    touches = true;
+    bool within = true;
+    for (int axis = 0; axis < 3; axis++)
+      within &= n[axis] >= l->lower[axis] && n[axis] < l->lower[axis] + l->bricks[axis] * LAVES__BRICK_SIDE;
+    if (within && laves__lattice_add_record(l, n[0], n[1], n[2]) < 0) return false;
+  }
+  return !touches || laves__lattice_add_record(l, x, y, z) >= 0;
+}
+
+/* Inside cells never touch outside cells when the oracle's answers about boxes agree with one another; where they do not,
+ * both are looked at site by site. */
+static bool seal_cells(laves__lattice *l) {
+  for (int32_t bz = 0; bz < l->bricks[2]; bz++)
+    for (int32_t by = 0; by < l->bricks[1]; by++)
+      for (int32_t bx = 0; bx < l->bricks[0]; bx++) {
+        const int32_t b[3] = {bx, by, bz};
+        if (l->directory[slot_of(l, b)] == LAVES__OUT || is_deep_brick(l, b)) continue;
+        for (int inside = 0; inside < LAVES__BRICK_CELLS; inside++)
+          if (!seal_cell(l, l->lower[0] + bx * LAVES__BRICK_SIDE + inside % LAVES__BRICK_SIDE,
+                         l->lower[1] + by * LAVES__BRICK_SIDE + inside / LAVES__BRICK_SIDE % LAVES__BRICK_SIDE,
+                         l->lower[2] + bz * LAVES__BRICK_SIDE + inside / (LAVES__BRICK_SIDE * LAVES__BRICK_SIDE)))
+            return false;
+      }
+  return true;
+}
+
+/* Likewise, no edge from a site may cross into a cell without a record. */
+static bool seal_record(laves__lattice *l, size_t index) {
+  const laves__record *r = &l->record[index];
+  bool has[2] = {false, false}, beside[2] = {false, false}; /* signs within; cells around: 0 inside, 1 outside */
+  for (int site = 0; site < LAVES__C15_SITES; site++) has[r->sign[site] > 0] = true;
+  for (int k = 0; k < 27; k++)
+    if (r->around[k] < 0) beside[r->around[k] == LAVES__OUT] = true;
+  if (!(has[0] && beside[1]) && !(has[1] && beside[0])) return true;
+  const int32_t at[3] = {r->xyz[0], r->xyz[1], r->xyz[2]};
+  for (int site = 0; site < LAVES__C15_SITES; site++)
+    for (int k = 0; k < laves__c15_degree[site]; k++) {
+      r = &l->record[index];
+      const laves__site s = laves__neighbour(r, site, k);
+      if (s.cell >= 0 || laves__site_sign(l, s) == r->sign[site]) continue;
+      const int cell = laves__c15_neighbour[site][k].cell;
+      const int32_t n[3] = {at[0] + cell % 3 - 1, at[1] + cell / 3 % 3 - 1, at[2] + cell / 9 - 1};
+      for (int axis = 0; axis < 3; axis++)
+        if (n[axis] < l->lower[axis] || n[axis] >= l->lower[axis] + l->bricks[axis] * LAVES__BRICK_SIDE) return true;
+      if (laves__lattice_add_record(l, n[0], n[1], n[2]) < 0) return false;
+    }
+  return true;
+}
+
+/* Evaluates all records, and those that sealing adds, until no edge crosses unseen. */
+static laves_result evaluate_all(carving *c, laves_error *error) {
+  laves__lattice *l = c->lattice;
+  if (!seal_cells(l)) return laves__fail_memory(l->context, error);
+  for (c->first_record = 0; c->first_record < l->record_count;) {
+    const size_t count = l->record_count - c->first_record;
+    if (!laves__parallel_for(l->context, "classify", count, 4, evaluate_records, c)) return laves__fail_cancelled(error);
+    laves__lattice_link(l);
+    c->first_record += count;
+    for (size_t i = 0, known = l->record_count; i < known; i++)
+      if (!seal_record(l, i)) return laves__fail_memory(l->context, error);
+  }
+  return LAVES_OK;
 }
 
 /* A solid that reaches the edge of the directory is larger than its bounds say. */
@@ -189,7 +276,7 @@ laves_result laves__classify(const laves__frame *frame, laves__lattice *lattice,
   int32_t span = 1;
   while (span < lattice->bricks[0] || span < lattice->bricks[1] || span < lattice->bricks[2]) span *= 2;
   bool done = carve_bricks(&c, (int32_t[3]){0, 0, 0}, span);
-  if (done && c.list.count) {
+  if (done) {
     c.cell_side = laves__alloc(context, c.list.count, LAVES__BRICK_CELLS);
     c.out_of_memory = !c.cell_side;
     done = c.cell_side && laves__parallel_for(context, "classify", c.list.count, 1, carve_cells, &c);
@@ -197,17 +284,17 @@ laves_result laves__classify(const laves__frame *frame, laves__lattice *lattice,
       c.out_of_memory = true;
       done = false;
     }
-    done = done && laves__parallel_for(context, "classify", lattice->record_count, 4, evaluate_records, &c);
-    const laves__record *overflow = done ? find_overflow(lattice) : NULL;
-    if (overflow) {
-      const laves__vec3 at = laves__frame_to_input(frame, laves__site_position(overflow->xyz, 0));
-      result =
-          laves__fail(error, LAVES_ERROR_INPUT,
-                      "the solid reaches beyond its bounds near (%g, %g, %g); give bounds that contain it", at.x, at.y, at.z);
-    }
-    if (done) laves__lattice_link(lattice);
   }
-  if (!done) result = c.out_of_memory ? laves__fail_memory(context, error) : laves__fail_cancelled(error);
+  if (done)
+    result = evaluate_all(&c, error);
+  else
+    result = c.out_of_memory ? laves__fail_memory(context, error) : laves__fail_cancelled(error);
+  const laves__record *overflow = result == LAVES_OK ? find_overflow(lattice) : NULL;
+  if (overflow) {
+    const laves__vec3 at = laves__frame_to_input(frame, laves__site_position(overflow->xyz, 0));
+    result = laves__fail(error, LAVES_ERROR_INPUT,
+                         "the solid reaches beyond its bounds near (%g, %g, %g); give bounds that contain it", at.x, at.y, at.z);
+  }
   laves__free(context, c.cell_side, c.list.count, LAVES__BRICK_CELLS);
   laves__free(context, c.list.brick, c.list.capacity, sizeof *c.list.brick);
   return result;
