@@ -52,10 +52,9 @@ static inline double sine_shifted(double x, double quarter) {
                 z * (2.48015872894767294178e-05 +
                      z * (-2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
   const double turns = k + quarter;
-  const double m = turns - 4 * round_near(turns * 0.25 - 0.375); /* 0, 1, 2 or 3 */
-  const double half = m >= 2 ? m - 2 : m;
-  const double value = half == 1 ? c : s;
-  return m >= 2 ? -value : value;
+  const double m = turns - 4 * round_near(turns * 0.25 - 0.375);                        /* 0, 1, 2 or 3 */
+  const double lower_half = round_near(m * 0.5 - 0.25), is_cosine = m - 2 * lower_half; /* 0 or 1 */
+  return (s * (1 - is_cosine) + c * is_cosine) * (1 - 2 * lower_half);
 }
 
 static inline double sin_of(double x) { return sine_shifted(x, 0); }

@@ -197,7 +197,7 @@ static laves__node fold_unary(laves__expression *e, laves__op op, laves__node a)
 static laves__node fold_binary(laves__expression *e, laves__op op, laves__node a, laves__node b) {
   double k;
   if (laves__node_is_constant(e, b, &k)) {
-    if (op == LAVES__OP_POW && k == floor_of(k) && fabs(k) >= 2 && fabs(k) <= 64) return integer_power(e, a, (int)k);
+    if (op == LAVES__OP_POW && k == floor_of(k) && fabs(k) <= 64 && k != 0 && k != 1) return integer_power(e, a, (int)k);
     return fold_right_constant(e, op, a, k);
   }
   if (op == LAVES__OP_SUB && laves__node_is_constant(e, a, &k) && k == 0) return laves__node_make(e, LAVES__OP_NEGATE, b, 0, 0);

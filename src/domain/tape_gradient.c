@@ -23,7 +23,7 @@ static dual power(dual a, dual b) {
 
 static dual quotient(dual a, dual b) {
   const double value = a.value / b.value;
-  return chain2(value, inverse(b.value), a, -value * inverse(b.value), b);
+  return b.value != 0 ? chain2(value, 1 / b.value, a, -value / b.value, b) : with(value, v3(0, 0, 0));
 }
 
 static dual norm3(dual a, dual b, dual c) {
@@ -127,5 +127,6 @@ laves__dual laves__tape_gradient(const laves__tape *tape, laves__vec3 point) {
     result = apply(tape, p, a, b, registers[p->operand[2]]);
     registers[p->out] = result;
   }
+  if (!v3_finite(result.gradient)) result.gradient = v3(0, 0, 0); /* an overflow on the way */
   return result;
 }
