@@ -1,8 +1,12 @@
 /* Bounds by elimination: what intervals prove to be outside is cut away until the box no longer shrinks.
  *
- * Each round divides the box into 16^3 cells, top down, and takes the hull of those not proved outside. An axis
- * that is still infinite is divided in t, with coordinate t / (1 - |t|), so that its last cells reach to infinity. When
- * a round gains little, a finer one ends the search. A box that is still infinite then has no bounds that intervals see. */
+ * Each round divides the box into 16^3 cells, top down, and takes the hull of those not proved outside. When a round gains
+ * little, a finer one ends the search. An axis that is still infinite is divided in t, with coordinate t / (1 - |t|), so that
+ * its last cells reach to infinity; what is left then is proved to hold the solid.
+ *
+ * Intervals see nothing at infinity where terms of opposite sign grow, as in x^4 - x^2. Such an axis is cut at
+ * HORIZON and divided in proportion, in t with coordinate (2^(62 |t|) - 1) / 2^31, once: bounds that
+ * come from there are proved up to the horizon only. What still reaches it has no bounds that can be found. */
 #include <math.h>
 
 #include "domain/elementary.h"
@@ -20,22 +24,38 @@ static const double map_slack = 1e-12;
 
 typedef struct search {
   const laves__tape *tape;
-  bool compact[3]; /* the axis is divided in t */
+  bool divided_in_t[3]; /* the axis has infinite sides, or is cut at the horizon */
+  bool in_proportion;   /* which of the two maps applies */
   int depth;
   double instructions;
-  laves__box3 hull; /* in t where compact */
+  laves__box3 hull; /* in t where so divided */
 } search;
 
-static double coordinate_of(double t) { return t / (1 - fabs(t)); } /* +-1 give +-infinity */
-static double parameter_of(double x) { return isinf(x) ? copysign(1, x) : x / (1 + fabs(x)); }
+/* The horizon is the coordinate of t = 1: 2147483647.9999999995. */
+static const double octaves = 62, finest = 1.0 / 2147483648.0;
+
+static double compact_coordinate(double t) { return t / (1 - fabs(t)); } /* +-1 give +-infinity */
+static double compact_parameter(double x) { return isinf(x) ? copysign(1, x) : x / (1 + fabs(x)); }
+static double proportional_coordinate(double t) { return copysign((exp2(octaves * fabs(t)) - 1) * finest, t); }
+static double proportional_parameter(double x) {
+  return isinf(x) ? copysign(1, x) : copysign(min_of(1, log2(fabs(x) / finest + 1) / octaves), x);
+}
 
 static laves__box3 mapped(const search *s, laves__box3 cell, double (*map)(double)) {
   for (int i = 0; i < 3; i++) {
-    if (!s->compact[i]) continue;
+    if (!s->divided_in_t[i]) continue;
     (&cell.lower.x)[i] = map((&cell.lower.x)[i]);
     (&cell.upper.x)[i] = map((&cell.upper.x)[i]);
   }
   return cell;
+}
+
+static laves__box3 to_coordinates(const search *s, laves__box3 cell) {
+  return mapped(s, cell, s->in_proportion ? proportional_coordinate : compact_coordinate);
+}
+
+static laves__box3 to_parameters(const search *s, laves__box3 cell) {
+  return mapped(s, cell, s->in_proportion ? proportional_parameter : compact_parameter);
 }
 
 static void visit(search *s, laves__box3 cell, int depth) {
@@ -44,7 +64,7 @@ static void visit(search *s, laves__box3 cell, int depth) {
   if (s->instructions > instruction_limit) depth = s->depth;
   s->instructions += (double)s->tape->count;
   bool may_be_nan;
-  const laves__interval value = laves__tape_interval(s->tape, mapped(s, cell, coordinate_of), &may_be_nan);
+  const laves__interval value = laves__tape_interval(s->tape, to_coordinates(s, cell), &may_be_nan);
   if (value.lower > 0 && !may_be_nan) return;
   if (depth == s->depth || value.upper < 0) {
     s->hull = box3_add(box3_add(s->hull, l), u);
@@ -58,39 +78,65 @@ static void visit(search *s, laves__box3 cell, int depth) {
   }
 }
 
-/* One round: the hull of what is left. */
-static laves__box3 shrink(search *s, laves__box3 box) {
-  for (int i = 0; i < 3; i++) s->compact[i] = isinf((&box.lower.x)[i]) || isinf((&box.upper.x)[i]);
+/* One round: the hull of what is left, in coordinates. *gain: whether it pays to go on. False when nothing is left. */
+static bool shrink(search *s, laves__box3 *box, bool *gain) {
+  const laves__box3 before = to_parameters(s, *box);
   s->hull = box3_empty();
-  visit(s, mapped(s, box, parameter_of), 0);
-  return s->hull;
+  visit(s, before, 0);
+  *gain = false;
+  for (int i = 0; i < 3; i++) {
+    const double old = (&before.upper.x)[i] - (&before.lower.x)[i], now = (&s->hull.upper.x)[i] - (&s->hull.lower.x)[i];
+    if (now < (1 - worthwhile) * old) *gain = true;
+  }
+  *box = to_coordinates(s, s->hull);
+  return s->hull.lower.x <= s->hull.upper.x;
 }
 
-static bool gained(laves__box3 before, laves__box3 after) {
-  for (int i = 0; i < 3; i++) {
-    const double old = (&before.upper.x)[i] - (&before.lower.x)[i], now = (&after.upper.x)[i] - (&after.lower.x)[i];
-    if (now < (1 - worthwhile) * old) return true;
+/* Marks the axes that are infinite; whether there are any. */
+static bool mark_endless(search *s, laves__box3 box) {
+  bool any = false;
+  for (int i = 0; i < 3; i++) any |= s->divided_in_t[i] = isinf((&box.lower.x)[i]) || isinf((&box.upper.x)[i]);
+  return any;
+}
+
+/* Rounds until they gain nothing. False when nothing is left. */
+static bool shrink_on(search *s, laves__box3 *box) {
+  bool gain = true;
+  for (int round = 0; gain && round < ROUND_LIMIT; round++) {
+    mark_endless(s, *box);
+    if (!shrink(s, box, &gain)) return false;
   }
-  return false;
+  return true;
+}
+
+/* One fine round up to the horizon. False when nothing is left. */
+static bool shrink_from_horizon(search *s, laves__box3 *box) {
+  bool gain;
+  s->in_proportion = true;
+  s->depth = LAST_DEPTH;
+  const bool some = shrink(s, box, &gain);
+  const double horizon = proportional_coordinate(1);
+  for (int i = 0; i < 3; i++)
+    if (s->divided_in_t[i] && ((&box->lower.x)[i] <= -horizon || (&box->upper.x)[i] >= horizon)) (&box->upper.x)[i] = INFINITY;
+  s->in_proportion = false;
+  s->depth = ROUND_DEPTH;
+  return some;
 }
 
 laves__bounds_result laves__bounds_find(const laves__tape *tape, laves__box3 *box) {
   search s = {.tape = tape, .depth = ROUND_DEPTH};
-  const bool was_endless = !laves__box3_is_finite(*box);
-  for (int round = 0; round < ROUND_LIMIT; round++) {
-    const laves__box3 hull = shrink(&s, *box);
-    if (hull.lower.x > hull.upper.x) return LAVES__BOUNDS_EMPTY;
-    const laves__box3 before = *box;
-    const bool more = gained(mapped(&s, before, parameter_of), hull);
-    *box = mapped(&s, hull, coordinate_of);
-    if (!more) break;
+  const bool was_endless = mark_endless(&s, *box);
+  if (!shrink_on(&s, box)) return LAVES__BOUNDS_EMPTY;
+  if (mark_endless(&s, *box)) {
+    if (!shrink_from_horizon(&s, box)) return LAVES__BOUNDS_EMPTY;
+    if (!laves__box3_is_finite(*box)) return LAVES__BOUNDS_ENDLESS;
+    if (!shrink_on(&s, box)) return LAVES__BOUNDS_EMPTY;
   }
-  if (!laves__box3_is_finite(*box)) return LAVES__BOUNDS_ENDLESS;
   if (s.instructions < instruction_limit / 2) {
+    bool gain;
+    mark_endless(&s, *box);
     s.depth = LAST_DEPTH;
-    const laves__box3 hull = shrink(&s, *box);
-    if (hull.lower.x > hull.upper.x) return LAVES__BOUNDS_EMPTY;
-    *box = hull;
+    if (!shrink(&s, box, &gain)) return LAVES__BOUNDS_EMPTY;
   }
   if (was_endless) {
     const laves__vec3 room = v3_scale(v3_sub(box->upper, box->lower), map_slack);
