@@ -5,6 +5,11 @@
 
 #include "domain/elementary.h"
 #include "domain/script.h"
+#include "domain/surface_input.h"
+#include "io/file.h"
+
+/* Surface files that one script may read. */
+enum { LEAF_LIMIT = 1000 };
 
 static const double degree = 3.14159265358979323846 / 180;
 
@@ -215,6 +220,60 @@ static int warp(lua_State *L) {
   return push(L, laves__shape_of_node(laves__node_warp(store(L), a.node, to)));
 }
 
+/* ---- surface files ---- */
+
+/* The path as it stands, or within the script's folder when that is known; pushed on the stack. */
+static const char *push_path(lua_State *L, const char *path) {
+  const char *folder = laves__script_of(L)->folder;
+  if (!folder || path[0] == '/') return lua_pushstring(L, path);
+  return lua_pushfstring(L, "%s/%s", folder, path);
+}
+
+static laves_result read_surface(laves_context *context, const char *path, laves_domain *domain, laves_error *error) {
+  char *bytes = NULL;
+  size_t length = 0;
+  laves_result result = laves__file_read(context, path, &bytes, &length, error);
+  if (result != LAVES_OK) return result;
+  laves__surface_input input = {0};
+  result = laves__surface_parse(context, bytes, length, path, &input, error);
+  laves__free(context, bytes, length + 1, 1);
+  return result == LAVES_OK ? laves__surface_build(context, &input, domain, error) : result;
+}
+
+/* surface("part.stl"). The model owns the domain from the start, so an error raised later loses nothing. */
+static int surface(lua_State *L) {
+  laves__script *script = laves__script_of(L);
+  laves__model *model = script->model;
+  if (lua_type(L, 1) != LUA_TSTRING)
+    return luaL_error(L, "surface: expected the name of a file, not %s", laves__script_type(L, 1));
+  if (model->leaf_count == LEAF_LIMIT) return luaL_error(L, "surface: at most %d files", (int)LEAF_LIMIT);
+  const char *path = push_path(L, lua_tostring(L, 1));
+  const double started = laves__wall_seconds();
+  laves_domain *domain = NULL;
+  if (laves__grow(script->context, &model->leaves, &model->leaf_capacity, model->leaf_count + 1, sizeof *model->leaves))
+    domain = laves__alloc_zeroed(script->context, 1, sizeof *domain);
+  if (!domain) {
+    script->over_memory = true;
+    return luaL_error(L, "out of memory");
+  }
+  domain->context = script->context;
+  model->leaves[model->leaf_count++] = domain;
+  laves_error error;
+  const laves_result result = read_surface(script->context, path, domain, &error);
+  script->started += laves__wall_seconds() - started;
+  script->over_memory |= result == LAVES_ERROR_MEMORY;
+  script->cancelled |= result == LAVES_ERROR_CANCELLED;
+  if (result != LAVES_OK) return luaL_error(L, "surface: %s", error.text);
+  const laves__oracle *o = &domain->oracle;
+  laves__shape s = laves__shape_of_node(laves__node_leaf(store(L), (uint32_t)model->leaf_count - 1));
+  s.box = (laves__box3){v3_add(o->bounds.lower, o->origin), v3_add(o->bounds.upper, o->origin)};
+  s.slope = 1;
+  s.exact = o->is_distance;
+  s.volume = o->volume;
+  s.area = o->area;
+  return push(L, s);
+}
+
 static const luaL_Reg solid_functions[] = {
     {"complement", complement},
     {"offset", offset},
@@ -230,6 +289,7 @@ static const luaL_Reg solid_functions[] = {
     {"repeat_linear", repeat_linear},
     {"repeat_grid", repeat_grid},
     {"repeat_polar", repeat_polar},
+    {"surface", surface},
     {NULL, NULL},
 };
 
