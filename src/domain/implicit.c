@@ -61,6 +61,7 @@ static bool project(const void *self, laves__vec3 point, double reach, uint32_t 
   const implicit *s = self;
   laves__vec3 p = point;
   laves__dual here = laves__tape_gradient(&s->tape, p);
+  if (s->is_distance && fabs(here.value) > reach * (1 + 1e-9)) return false;
   for (int i = 0; i < NEWTON_LIMIT; i++) {
     if (fabs(here.value) <= foot_tolerance * s->diagonal * v3_norm(here.gradient)) break;
     if (!newton_step(&s->tape, reach, &p, &here)) break;
@@ -138,20 +139,23 @@ static size_t sample(const void *self, double spacing, laves__vec3 *points, size
   int depth = 0;
   while (depth < SAMPLE_DEPTH_LIMIT && ldexp(width, -depth) > spacing) depth++;
   const laves__vec3 half = v3(width / 2, width / 2, width / 2), c = box3_centre(solid->bounds);
-  sample_cell(&s, (laves__box3){v3_sub(c, half), v3_add(c, half)}, depth);
+  do { /* too many: start again with cells twice as wide, rather than leave a part without samples */
+    s.count = 0;
+    sample_cell(&s, (laves__box3){v3_sub(c, half), v3_add(c, half)}, depth);
+  } while (s.count == capacity && depth-- > 0);
   return s.count;
 }
 
 /* ---- making ---- */
 
-static laves_result build_tape(implicit *s, laves__vec3 origin, laves_error *error) {
+static laves_result build_tape(implicit *s, const char *name, laves__vec3 origin, laves_error *error) {
   laves__expression *e = &s->model.expression;
   laves__affine shift = laves__affine_identity();
   shift.t = origin;
   const laves__node root = laves__expression_lower(e, s->model.shape.node, &shift);
   if (root == LAVES__NO_NODE) {
     if (!e->too_large) return laves__fail_memory(e->context, error);
-    return laves__fail(error, LAVES_ERROR_INPUT, "the solid needs more than %d operations; make it of fewer parts",
+    return laves__fail(error, LAVES_ERROR_INPUT, "%s: the solid needs more than %d operations; make it of fewer parts", name,
                        (int)LAVES__NODE_LIMIT);
   }
   return laves__tape_build(e, root, s->leaves, &s->tape, error);
@@ -214,12 +218,12 @@ laves_result laves__implicit_build(laves_context *context, const char *text, siz
   laves__vec3 origin = v3(0, 0, 0);
   laves_result result = laves__script_run(context, text, length, is_expression, name, folder, &s->model, error);
   if (result == LAVES_OK) result = copy_leaves(s, context, error);
-  if (result == LAVES_OK) result = build_tape(s, origin, error);
+  if (result == LAVES_OK) result = build_tape(s, name, origin, error);
   if (result == LAVES_OK) result = find_bounds(s, name, &box, error);
   if (result == LAVES_OK && v3_norm(box3_centre(box)) > far_away * box3_diagonal(box)) {
     origin = box3_centre(box);
     laves__tape_free(context, &s->tape);
-    result = build_tape(s, origin, error);
+    result = build_tape(s, name, origin, error);
   }
   if (result != LAVES_OK) {
     free_implicit(context, s);

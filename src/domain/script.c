@@ -19,8 +19,9 @@ static const size_t lua_byte_limit = (size_t)64 << 20;
 static const size_t step_limit = 20000000;
 /* Few steps can be slow (inserting at the front of a huge table); far above what honest scripts take. */
 static const double second_limit = 10;
-/* Steps between two looks at the clock. */
+/* Steps between two looks at the clock, and between two reports of progress. */
 enum { STEPS_PER_LOOK = 1000 };
+static const size_t steps_per_report = 100000;
 
 laves__script *laves__script_of(lua_State *L) { return *(laves__script **)lua_getextraspace(L); }
 
@@ -56,17 +57,21 @@ static void *allocate(void *user, void *block, size_t old_bytes, size_t new_byte
   return NULL;
 }
 
+static void stop(lua_State *L, lua_Debug *record, const char *what) {
+  lua_getinfo(L, "l", record);
+  lua_pushfstring(L, "%s:%d: %s", laves__script_of(L)->name, record->currentline, what);
+  lua_error(L);
+}
+
 static void look(lua_State *L, lua_Debug *record) {
-  (void)record;
   laves__script *script = laves__script_of(L);
   script->steps += STEPS_PER_LOOK;
-  if (script->steps > step_limit)
-    luaL_error(L, "the script takes more than %d million steps; is there an endless loop?", (int)(step_limit / 1000000));
+  if (script->steps > step_limit) stop(L, record, "the script takes more than 20 million steps; is there an endless loop?");
   if (laves__wall_seconds() - script->started > second_limit)
-    luaL_error(L, "the script runs for more than %d seconds; is there an endless loop?", (int)second_limit);
-  if (laves__cancelled(script->context, "script", 0)) {
+    stop(L, record, "the script runs for more than 10 seconds; is there an endless loop?");
+  if (script->steps % steps_per_report == 0 && laves__cancelled(script->context, "script", 0)) {
     script->cancelled = true;
-    luaL_error(L, "cancelled");
+    stop(L, record, "cancelled");
   }
 }
 
@@ -217,11 +222,15 @@ static laves_result explain(laves__script *script, lua_State *L, int status, lav
   if (script->cancelled) return laves__fail_cancelled(error);
   if (script->over_memory || script->model->expression.out_of_memory) return laves__fail_memory(script->context, error);
   if (status == LUA_ERRMEM || script->over_limit)
-    return laves__fail(error, LAVES_ERROR_INPUT,
-                       "%s:%d: the script needs more than %d MiB of memory; does it grow a table or string without end?",
-                       script->name, script->line, (int)(lua_byte_limit >> 20));
+    return laves__fail(
+        error, LAVES_ERROR_INPUT,
+        "%s:%d: the script needs more than %d MiB of memory; does it recurse, or grow a table or text, without end?",
+        script->name, script->line, (int)(lua_byte_limit >> 20));
   const char *text = lua_tostring(L, -1);
-  return laves__fail(error, LAVES_ERROR_INPUT, "%s", text ? text : "the script raised an error that is not a text");
+  if (!text) text = "the script raised an error that is not a text";
+  if (strcmp(text, "C stack overflow") == 0) text = "brackets or calls are nested too deeply";
+  if (strncmp(text, script->name, strlen(script->name)) == 0) return laves__fail(error, LAVES_ERROR_INPUT, "%s", text);
+  return laves__fail(error, LAVES_ERROR_INPUT, "%s: %s", script->name, text);
 }
 
 laves_result laves__script_run(laves_context *context, const char *text, size_t length, bool is_expression, const char *name,

@@ -57,11 +57,11 @@ static bool is_vector(laves__parameter_kind kind) { return kind == LAVES__VECTOR
 
 static void check_number(lua_State *L, const char *function, const laves__parameter *p, double value) {
   const char *wanted = NULL;
-  if (!isfinite(value)) wanted = "a finite number";
   if (p->kind == LAVES__POSITIVE && !(value > 0)) wanted = "a positive number";
   if (p->kind == LAVES__NONNEGATIVE && !(value >= 0)) wanted = "zero or a positive number";
   if ((p->kind == LAVES__COUNT || p->kind == LAVES__COUNTS) && !(value >= 1 && value <= 1e6 && value == floor(value)))
     wanted = "a whole number from 1 to 1000000";
+  if (!isfinite(value)) wanted = "a finite number";
   if (wanted) luaL_error(L, "%s: %s must be %s, not %f", function, p->name, wanted, value);
 }
 
