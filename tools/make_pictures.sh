@@ -15,10 +15,9 @@ draw() {
   "$program" view "$mesh" "$@" -o "docs/images/$picture.png"
 }
 
-draw octopus octopus.lua 30k --view 25,30 --size 640x480
-draw octopus-cut octopus.lua 30k --view 25,30 --size 640x480 --cut y
+draw octopus octopus.lua 30k --view -55,25 --size 640x440
+draw octopus-cut octopus.lua 30k --view -55,25 --size 640x440 --cut y
 draw knot knot.ply 12k --view 20,50 --size 560x420
-draw socket-cut socket.lua 60k --view 50,35 --size 560x420 --cut x
+draw socket-cut socket.lua 60k --view -50,35 --size 640x440 --cut y
 draw gyroid gyroid.lua 40k --view 30,25 --size 560x420
-draw section boolean.lua 20k --view 35,22 --size 720x540 --cut x
-draw angles octopus.lua 30k --view 15,12 --size 720x540 --cut x --color dihedral
+draw angles octopus.lua 30k --view -80,15 --size 760x480 --cut y --color dihedral
