@@ -62,6 +62,11 @@ laves_result laves__measure_distances(laves_context *context, const laves_mesh *
 laves_result laves__check_distances(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
                                     const laves_domain *domain, laves_check *check, laves_error *error);
 
+/* Samples of a domain's surface (local coordinates), about `spacing` apart, for domains that offer none themselves.
+ * Returns how many, at most `capacity`; none when the search would cost too much at that spacing. */
+size_t laves__sample_surface(laves_context *context, const laves__oracle *oracle, double spacing, laves__vec3 *points,
+                             size_t capacity);
+
 /* The smallest radius of curvature of the domain's surface within about `reach` of a point (coordinates of the mesh),
  * seen at that scale; INFINITY where it is flat or absent. */
 double laves__curvature_radius(const laves_domain *domain, laves__vec3 point, double reach);

@@ -133,16 +133,19 @@ static laves_result list_surface_samples(laves_context *context, measuring *m, l
   laves__samples *samples = m->samples;
   double spacing = SURFACE_SPACING * samples->spacing;
   const double area = m->oracle->area > 0 ? m->oracle->area : 2 * boundary_area(samples);
-  if (!m->oracle->sample || !(spacing > 0) || !isfinite(area)) return LAVES_OK;
+  if (!(spacing > 0) || !isfinite(area)) return LAVES_OK;
   if (area / (spacing * spacing) > SURFACE_SAMPLES_MAX) spacing = sqrt(area / SURFACE_SAMPLES_MAX);
   const size_t room = (size_t)(4 * area / (spacing * spacing)) + 4096;
   laves__vec3 *points = laves__alloc(context, room, sizeof *points);
   if (!points) return laves__fail_memory(context, error);
-  size_t count = m->oracle->sample(m->oracle->self, spacing, points, room);
+  const laves__oracle *oracle = m->oracle;
+  size_t count = oracle->sample ? oracle->sample(oracle->self, spacing, points, room) : 0;
+  for (double wider = spacing; !oracle->sample && count == 0 && wider < m->reach_max && !laves__is_cancelled(context); wider *= 2)
+    count = laves__sample_surface(context, oracle, wider, points, room);
   if (count > room) count = room;
   laves_result result = LAVES_OK;
   if (laves__grow(context, &samples->items, &samples->capacity, samples->count + count, sizeof *samples->items)) {
-    for (size_t i = 0; i < count; i++) samples->items[samples->count++] = sample_at(v3_add(points[i], m->oracle->origin), 1);
+    for (size_t i = 0; i < count; i++) samples->items[samples->count++] = sample_at(v3_add(points[i], oracle->origin), 1);
   } else {
     result = laves__fail_memory(context, error);
   }

@@ -6,7 +6,8 @@
 
 #include "certify/certify.h"
 
-enum { NOTHING = UINT32_MAX };
+/* The end of a chain. */
+#define NOTHING UINT32_MAX
 
 typedef struct grid {
   double cell;

@@ -187,6 +187,30 @@ static void missing_part(void **state) {
   laves_mesh_free(mesh);
 }
 
+static void ball_of_values(void *user, const double *points, size_t count, double *values) {
+  (void)user;
+  for (size_t i = 0; i < count; i++) values[i] = v3_norm(v3(points[3 * i], points[3 * i + 1], points[3 * i + 2])) - 1;
+}
+
+/* A domain without samples of its own is sampled by the check, with and without a Lipschitz constant. */
+static void callback_domain(void **state) {
+  laves_mesh *mesh = fixture_ball(*state, 6, 1);
+  const double deepest = depth(mesh);
+  for (int lipschitz = 0; lipschitz <= 1; lipschitz++) {
+    const laves_function function = {
+        .evaluate = ball_of_values, .lower = {-1.1, -1.2, -1.3}, .upper = {1.1, 1.2, 1.3}, .lipschitz = lipschitz};
+    laves_domain *domain;
+    laves_check c;
+    assert_int_equal(laves_domain_from_function(*state, &function, &domain, NULL), LAVES_OK);
+    assert_int_equal(laves_check_mesh(*state, mesh, domain, &c, NULL), LAVES_OK);
+    assert_true(c.to_surface_max > 0.8 * deepest && c.to_surface_max < 1.01 * deepest);
+    assert_true(c.from_surface_max > 0.7 * deepest && c.from_surface_max < 1.01 * deepest);
+    assert_true(fabs(c.from_surface_mean / c.to_surface_mean - 1) < 0.2);
+    laves_domain_free(domain);
+  }
+  laves_mesh_free(mesh);
+}
+
 /* A vertex pulled out stands alone, however many samples around it are beyond the distance. */
 static void places_beyond(void **state) {
   laves_mesh *mesh = fixture_ball(*state, 8, 1);
@@ -318,17 +342,10 @@ static void short_of_memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      TEST(tree_finds_the_nearest),
-      TEST(tree_of_nothing),
-      TEST(inscribed_ball),
-      TEST(larger_sphere),
-      TEST(missing_part),
-      TEST(places_beyond),
-      TEST(garbage_points),
-      cmocka_unit_test(curvature_of_a_ball),
-      TEST(window_of_kuhn),
-      TEST(worst_first),
-      cmocka_unit_test(short_of_memory),
+      TEST(tree_finds_the_nearest), TEST(tree_of_nothing), TEST(inscribed_ball),
+      TEST(larger_sphere),          TEST(missing_part),    TEST(callback_domain),
+      TEST(places_beyond),          TEST(garbage_points),  cmocka_unit_test(curvature_of_a_ball),
+      TEST(window_of_kuhn),         TEST(worst_first),     cmocka_unit_test(short_of_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
