@@ -9,6 +9,9 @@
 
 enum { LEAF_TRIANGLES = 4, MORTON_BITS = 21, STACK = 64 };
 
+/* Keeps the nearest triangle below a caller's bound that was rounded, or that it just meets. */
+#define BOUND_SLACK 1e-9
+
 typedef struct triangle {
   laves__vec3 a, b, c;
 } triangle;
@@ -166,13 +169,13 @@ static double leaf_nearest2(const laves__boundary_tree *tree, size_t leaf, laves
   return best;
 }
 
-double laves__boundary_tree_distance(const laves__boundary_tree *tree, laves__vec3 point) {
+double laves__boundary_tree_distance(const laves__boundary_tree *tree, laves__vec3 point, double bound) {
   struct {
     size_t node;
     double distance2;
   } stack[STACK];
   int depth = 0;
-  double best = INFINITY;
+  double best = bound * bound * (1 + BOUND_SLACK);
   if (tree->triangle_count == 0) return INFINITY;
   stack[depth].node = 1;
   stack[depth++].distance2 = 0;

@@ -12,7 +12,8 @@ laves_result laves__boundary_tree_build(laves_context *context, const laves_mesh
                                         laves__vec3 origin, laves__boundary_tree **tree, laves_error *error);
 void laves__boundary_tree_free(laves__boundary_tree *tree);
 
-/* The distance from a point (relative to `origin`) to the nearest triangle; INFINITY when there is none. */
-double laves__boundary_tree_distance(const laves__boundary_tree *tree, laves__vec3 point);
+/* The distance from a point (relative to `origin`) to the nearest triangle; INFINITY when there is none. The answer must be
+ * known not to exceed `bound`, which may be INFINITY. */
+double laves__boundary_tree_distance(const laves__boundary_tree *tree, laves__vec3 point, double bound);
 
 #endif

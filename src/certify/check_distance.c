@@ -11,7 +11,7 @@
 
 #include "certify/boundary_tree.h"
 
-enum { SAMPLES_PER_BLOCK = 512, SAMPLES_PER_FACE = 4 + 3 + 3, INNER = 4 };
+enum { CHUNK = 256, SAMPLES_PER_FACE = 4 + 3 + 3, INNER = 4 };
 
 /* Distance of surface samples in mean boundary edges: about five on the area of a triangle. */
 #define SURFACE_SPACING 0.3
@@ -101,25 +101,34 @@ static double distance_to_surface(const measuring *m, laves__vec3 local, uint32_
   return fabs(phi);
 }
 
-static void project_block(void *user, size_t begin, size_t end, int worker) {
+/* Samples are measured in chunks of a fixed size, within which each one starts from what the one before it found: that
+ * is fast, as neighbours in the list are neighbours in space, and does not depend on the threads. */
+static void project_chunks(void *user, size_t begin, size_t end, int worker) {
   const measuring *m = user;
   (void)worker;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t chunk = begin; chunk < end; chunk++) {
     uint32_t hint = LAVES__NO_HINT;
-    laves__sample *sample = &m->samples->items[i];
-    sample->distance = distance_to_surface(m, v3_sub(sample->point, m->oracle->origin), &hint);
+    for (size_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < m->samples->boundary_count; i++) {
+      laves__sample *sample = &m->samples->items[i];
+      sample->distance = distance_to_surface(m, v3_sub(sample->point, m->oracle->origin), &hint);
+    }
   }
 }
 
 /* ---- samples on the surface ---- */
 
-static void nearest_block(void *user, size_t begin, size_t end, int worker) {
+/* The nearest triangle of the sample before is no further from this one than its distance and the way between them. */
+static void nearest_chunks(void *user, size_t begin, size_t end, int worker) {
   const measuring *m = user;
+  laves__sample *samples = m->samples->items + m->samples->boundary_count;
+  const size_t count = m->samples->count - m->samples->boundary_count;
   (void)worker;
-  for (size_t i = begin; i < end; i++) {
-    laves__sample *sample = &m->samples->items[m->samples->boundary_count + i];
-    sample->distance = laves__boundary_tree_distance(m->tree, v3_sub(sample->point, m->oracle->origin));
-  }
+  for (size_t chunk = begin; chunk < end; chunk++)
+    for (size_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < count; i++) {
+      double bound = INFINITY;
+      if (i > chunk * CHUNK) bound = samples[i - 1].distance + v3_distance(samples[i - 1].point, samples[i].point);
+      samples[i].distance = laves__boundary_tree_distance(m->tree, v3_sub(samples[i].point, m->oracle->origin), bound);
+    }
 }
 
 static double boundary_area(const laves__samples *samples) {
@@ -155,6 +164,8 @@ static laves_result list_surface_samples(laves_context *context, measuring *m, l
 
 /* ---- both ---- */
 
+static size_t chunks(size_t count) { return (count + CHUNK - 1) / CHUNK; }
+
 laves_result laves__measure_distances(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
                                       const laves_domain *domain, laves__samples *samples, laves_error *error) {
   laves__box3 box;
@@ -167,7 +178,7 @@ laves_result laves__measure_distances(laves_context *context, const laves_mesh *
 
   laves_result result = list_boundary_samples(context, &m, error);
   if (result != LAVES_OK) goto clean_up;
-  if (!laves__parallel_for(context, "distance", samples->boundary_count, SAMPLES_PER_BLOCK, project_block, &m)) {
+  if (!laves__parallel_for(context, "distance", chunks(samples->boundary_count), 1, project_chunks, &m)) {
     result = laves__fail_cancelled(error);
     goto clean_up;
   }
@@ -175,7 +186,7 @@ laves_result laves__measure_distances(laves_context *context, const laves_mesh *
   if (result != LAVES_OK) goto clean_up;
   result = laves__boundary_tree_build(context, mesh, boundary, m.oracle->origin, &m.tree, error);
   if (result != LAVES_OK) goto clean_up;
-  if (!laves__parallel_for(context, "distance", samples->count - samples->boundary_count, SAMPLES_PER_BLOCK, nearest_block, &m))
+  if (!laves__parallel_for(context, "distance", chunks(samples->count - samples->boundary_count), 1, nearest_chunks, &m))
     result = laves__fail_cancelled(error);
 clean_up:
   laves__boundary_tree_free(m.tree);

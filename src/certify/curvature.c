@@ -25,9 +25,9 @@ static const int8_t directions[DIRECTIONS][3] = {{1, 0, 0},  {-1, 0, 0},  {0, 1,
 
 static int collect_feet(const laves__oracle *oracle, laves__vec3 local, double scale, foot feet[DIRECTIONS + 1]) {
   int count = 0;
+  uint32_t hint = LAVES__NO_HINT;
   for (int i = -1; i < DIRECTIONS; i++) {
     laves__vec3 p = local;
-    uint32_t hint = LAVES__NO_HINT;
     if (i >= 0) p = v3_mad(p, v3_unit(v3(directions[i][0], directions[i][1], directions[i][2])), scale);
     if (!oracle->project(oracle->self, p, NEAR * scale, &hint, &feet[count].point, &feet[count].normal)) continue;
     if (v3_distance(feet[count].point, local) <= NEAR * scale) count++;

@@ -32,22 +32,39 @@ static bool has_both_signs(const laves__oracle *oracle, laves__vec3 c, double ha
 static void sample_leaf(search *s, laves__vec3 c, double half) {
   uint32_t hint = LAVES__NO_HINT;
   laves__vec3 foot, normal;
-  if (s->count == s->capacity || !has_both_signs(s->oracle, c, half)) return;
+  if (s->count == s->capacity || (!s->oracle->is_distance && !has_both_signs(s->oracle, c, half))) return;
   if (!s->oracle->project(s->oracle->self, c, 2 * half, &hint, &foot, &normal) || !holds(c, half, foot)) return;
   s->points[s->count++] = foot;
 }
 
+/* Which of eight cells the surface may cross. Distances are asked for together: each helps to find the next. */
+static void find_crossed(const search *s, const laves__vec3 centres[8], double half, bool crossed[8]) {
+  double phi[8];
+  const double radius = sqrt(3) * half * (1 + 1e-9); /* room for the rounding of distances */
+  if (s->oracle->is_distance) s->oracle->evaluate(s->oracle->self, 8, centres, phi, NULL);
+  for (int i = 0; i < 8; i++)
+    crossed[i] = s->oracle->is_distance
+                     ? fabs(phi[i]) <= radius
+                     : s->oracle->side(s->oracle->self, centres[i], radius, v3(half, half, half)) == LAVES__UNDECIDED;
+}
+
+/* Goes through the eight parts of a cell. */
 static void visit(search *s, laves__vec3 c, double half, int depth) {
-  if (s->visits++ >= VISITS_MAX) return;
+  const double h = half / 2;
+  laves__vec3 centres[8];
+  bool crossed[8];
+  if ((s->visits += 8) >= VISITS_MAX) return;
   if (s->visits % VISITS_PER_ASKING == 0 && laves__cancelled(s->context, "distance", (double)s->visits / VISITS_MAX))
     s->visits = VISITS_MAX;
-  if (s->oracle->side(s->oracle->self, c, sqrt(3) * half, v3(half, half, half)) != LAVES__UNDECIDED) return;
-  if (depth == 0) {
-    sample_leaf(s, c, half);
-    return;
+  for (int i = 0; i < 8; i++) centres[i] = v3_add(c, v3(i & 1 ? h : -h, i & 2 ? h : -h, i & 4 ? h : -h));
+  find_crossed(s, centres, h, crossed);
+  for (int i = 0; i < 8; i++) {
+    if (!crossed[i]) continue;
+    if (depth > 1)
+      visit(s, centres[i], h, depth - 1);
+    else
+      sample_leaf(s, centres[i], h);
   }
-  const double h = half / 2;
-  for (int i = 0; i < 8; i++) visit(s, v3_add(c, v3(i & 1 ? h : -h, i & 2 ? h : -h, i & 4 ? h : -h)), h, depth - 1);
 }
 
 size_t laves__sample_surface(laves_context *context, const laves__oracle *oracle, double spacing, laves__vec3 *points,
@@ -55,7 +72,7 @@ size_t laves__sample_surface(laves_context *context, const laves__oracle *oracle
   search s = {.context = context, .oracle = oracle, .points = points, .capacity = capacity};
   const laves__vec3 widths = v3_sub(oracle->bounds.upper, oracle->bounds.lower);
   const double half = fmax(widths.x, fmax(widths.y, widths.z)) / 2;
-  int depth = 0;
+  int depth = 1;
   while (depth < DEPTH_MAX && 2 * half > ldexp(spacing, depth)) depth++;
   visit(&s, box3_centre(oracle->bounds), half, depth);
   return s.visits < VISITS_MAX ? s.count : 0;

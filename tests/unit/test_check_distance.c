@@ -121,7 +121,9 @@ static void tree_finds_the_nearest(void **state) {
   assert_int_equal(laves__boundary_tree_build(*state, mesh, &boundary, origin, &tree, NULL), LAVES_OK);
   for (int i = 0; i < 15 * 15 * 15; i++) {
     const laves__vec3 p = v3(i % 15 * 0.47 - 1.7, i / 15 % 15 * 0.49 - 1.9, i / 225 * 0.51 - 2.1);
-    assert_float_equal(laves__boundary_tree_distance(tree, v3_sub(p, origin)), cube_distance(p), 1e-12);
+    const double distance = cube_distance(p);
+    assert_float_equal(laves__boundary_tree_distance(tree, v3_sub(p, origin), INFINITY), distance, 1e-12);
+    assert_float_equal(laves__boundary_tree_distance(tree, v3_sub(p, origin), distance), distance, 1e-12);
   }
   laves__boundary_tree_free(tree);
   laves__boundary_free(&boundary);
@@ -133,7 +135,7 @@ static void tree_of_nothing(void **state) {
   laves__boundary empty = {0};
   laves__boundary_tree *tree;
   assert_int_equal(laves__boundary_tree_build(*state, mesh, &empty, v3(0, 0, 0), &tree, NULL), LAVES_OK);
-  assert_true(laves__boundary_tree_distance(tree, v3(0, 0, 0)) == INFINITY);
+  assert_true(laves__boundary_tree_distance(tree, v3(0, 0, 0), INFINITY) == INFINITY);
   laves__boundary_tree_free(tree);
   laves_mesh_free(mesh);
 }
