@@ -2,7 +2,7 @@
  *
  * In: triangles as read, which are consumed.  Out: a domain: oracle, facts, tags.
  *
- *   weld -> tree -> topology -> direction -> crossings -> walls -> normals -> oracle
+ *   weld -> tree -> topology -> (mend) -> direction -> crossings -> walls or open -> normals -> oracle
  *
  * Local coordinates are input minus origin. The origin is the box's centre on those axes where the centre lies further out
  * than the box is wide, where the subtraction is exact; elsewhere zero, where there is nothing to subtract. */
@@ -12,6 +12,9 @@
 
 /* Squares, cubes and products of coordinates must stay within the range of double with room. */
 static const double diagonal_min = 1e-60, diagonal_max = 1e60;
+
+/* Share of the box that an open surface must enclose to be taken for that of a solid. */
+static const double enclosed_min = 1e-3;
 
 static laves__box3 box_of(const laves__vec3 *points, size_t count) {
   laves__box3 b = box3_empty();
@@ -210,22 +213,70 @@ static void note_crossings(const laves__surface *s, const laves__crossings *c, l
   info->defect_place[LAVES_DEFECT_CROSSING][2] = place.z;
 }
 
+/* Open: {winding number = 1/2}. */
+static bool solve_open(laves__surface *s, laves__crossings *c, laves_domain_info *info) {
+  bool done = false;
+  const size_t count = s->face_count;
+  bool *keep = laves__alloc(s->context, count, sizeof *keep);
+  s->needs_winding = s->open = info->winding = true;
+  s->all_face_count = count;
+  info->volume = NAN;
+  mark_partial(s, c);
+  if (!keep || !laves__winding_build(s->context, &s->bvh, &s->winding) || !laves__surface_build_rim(s)) goto clean_up;
+  if (!laves__surface_judge_open(s, keep)) goto clean_up;
+  size_t kept = 0;
+  for (size_t f = 0; f < count; f++) kept += keep[f];
+  if (kept > 0 && kept < count && (!leave_out(s, keep, c) || !renew_topology(s, info))) goto clean_up;
+  mark_doubtful(s);
+  done = laves__surface_find_segments(s, c);
+clean_up:
+  laves__free(s->context, keep, count, sizeof *keep);
+  return done;
+}
+
+/* Volume about the middle of the surface, which tells in from out for open surfaces, too. */
+static double central_volume(const laves__surface *s) {
+  const laves__vec3 centre = box3_centre(box_of(s->points, s->point_count));
+  double volume6 = 0;
+  for (size_t f = 0; f < s->face_count; f++)
+    volume6 += v3_det(centre, s->points[s->faces[f][0]], s->points[s->faces[f][1]], s->points[s->faces[f][2]]);
+  return volume6 / 6;
+}
+
+/* Most edges unmatched: unconnected triangles, whose winding number means nothing. Or no inside at all: a sheet. */
+static bool encloses_nothing(const laves__surface *s) {
+  return s->rim_tree.count > 3 * s->all_face_count / 2 ||
+         laves__surface_inside_share(s, box_of(s->points, s->point_count)) < enclosed_min;
+}
+
+static bool mend(laves__surface *s, const laves_domain_info *info) {
+  if (!laves__surface_mend(s, info->defects[LAVES_DEFECT_OPEN_EDGE])) return false;
+  laves__bvh_free(s->context, &s->bvh);
+  return build_tree(s, NULL) && renew_topology(s, info);
+}
+
 static bool solve(laves__surface *s, laves_domain_info *info) {
   laves__crossings crossings = {0};
   bool done = false;
   s->face_flags = laves__alloc_zeroed(s->context, s->face_capacity, sizeof *s->face_flags);
   if (!s->face_flags || !build_tree(s, NULL) || !laves__surface_topology(s, info)) goto clean_up;
-  laves__surface_measure(s, &info->volume, &info->area);
-  if (info->volume < 0) {
-    for (uint32_t f = 0; f < s->face_count; f++) turn_face(s, f);
-    info->turned = true;
-    info->volume = -info->volume;
-    if (!renew_topology(s, info)) goto clean_up;
-  }
   if (!laves__surface_crossings(s, &crossings)) goto clean_up;
   note_crossings(s, &crossings, info);
-  if (crossings.count > 0 || info->component_count > 1 || any_doubt(s))
+  if (!info->closed) {
+    laves__crossings_free(s->context, &crossings);
+    if (!mend(s, info) || !laves__surface_crossings(s, &crossings)) goto clean_up;
+  }
+  if (central_volume(s) < 0) {
+    for (uint32_t f = 0; f < s->face_count; f++) turn_face(s, f);
+    info->turned = true;
+    if (!renew_topology(s, info)) goto clean_up;
+  }
+  laves__surface_measure(s, &info->volume, &info->area);
+  if (s->rim_count > 0) {
+    if (!solve_open(s, &crossings, info)) goto clean_up;
+  } else if (crossings.count > 0 || info->component_count > 1 || any_doubt(s)) {
     if (!solve_union(s, &crossings, info)) goto clean_up;
+  }
   done = laves__surface_normals(s);
 clean_up:
   laves__crossings_free(s->context, &crossings);
@@ -300,6 +351,15 @@ laves_result laves__surface_build(laves_context *context, laves__surface_input *
   }
   if (!solve(s, &domain->info)) {
     result = laves__fail_memory(context, error);
+    goto clean_up;
+  }
+  if (s->open && encloses_nothing(s)) {
+    const laves_domain_info *info = &domain->info;
+    result =
+        laves__fail(error, LAVES_ERROR_INPUT,
+                    "the surface encloses no volume: %zu triangles in %zu unconnected parts, with %zu open edges; close it, or "
+                    "check that it is a solid's surface",
+                    input->triangle_count, info->component_count, info->defects[LAVES_DEFECT_OPEN_EDGE]);
     goto clean_up;
   }
   fill_domain(s, input, origin, domain);

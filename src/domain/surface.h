@@ -7,6 +7,8 @@
  *   surface_crossing.c  pairs of triangles that meet where they should not
  *   surface_winding.c   how often the surface winds round a point
  *   surface_patch.c     which triangles bound the union of what is enclosed
+ *   surface_mend.c      cracks, repeats and directions of surfaces that are not closed
+ *   surface_open.c      what stays open: {winding number = 1/2}
  *   surface_oracle.c    sign, distance, projection
  *
  * Coordinates are local everywhere: input minus origin. */
@@ -134,6 +136,14 @@ typedef struct laves__surface {
   laves__segment *segments;
   uint32_t *segment_starts; /* [face_capacity + 1] */
   size_t segment_count;
+  /* Half-edges of edges not used as often forwards as backwards, each once for every use too many. */
+  uint32_t *rim;
+  size_t rim_count, rim_capacity;
+  /* Open surfaces: */
+  bool open;
+  size_t all_face_count; /* with those left out */
+  double rim_length;
+  laves__bvh rim_tree; /* over the rim of the whole, before walls were left out */
 } laves__surface;
 
 /* ---- weld ---- */
@@ -142,9 +152,12 @@ typedef struct laves__surface {
  * repeated faces. False when memory is short. */
 bool laves__surface_weld(laves__surface *s, const laves__surface_input *input, laves__vec3 origin, laves_domain_info *info);
 
+/* Drops faces that repeat another; any_direction: also in the opposite direction. */
+bool laves__surface_drop_repeats(laves__surface *s, bool any_direction, laves_domain_info *info);
+
 /* ---- topology ---- */
 
-/* Fills `across` and doubtful_points (whose faces form no single closed fan), and counts what info holds about edges, fans
+/* Fills `across`, `rim` and doubtful_points (whose faces form no single closed fan), and counts what info holds about edges, fans
  * and components (info may be a scratch copy). False when memory is short. */
 bool laves__surface_topology(laves__surface *s, laves_domain_info *info);
 bool laves__surface_normals(laves__surface *s);
@@ -176,6 +189,26 @@ double laves__surface_mean_winding(const laves__surface *s, uint32_t slot);
  * bool[face_count]. False when memory is short. */
 bool laves__surface_find_walls(const laves__surface *s, bool *keep, bool *inverted);
 bool laves__surface_find_segments(laves__surface *s, const laves__crossings *c);
+
+/* ---- open surfaces ---- */
+
+/* Makes a surface with open or contradicting edges as closed and as consistent as it can be. Its tree must be built anew. */
+bool laves__surface_mend(laves__surface *s, size_t open_edges);
+/* Which faces bound {winding number > 1/2} somewhere (keep); marks those that do so in part. */
+bool laves__surface_judge_open(laves__surface *s, bool *keep);
+bool laves__surface_build_rim(laves__surface *s);
+/* Share of a grid of points of the box that lies inside. */
+double laves__surface_inside_share(const laves__surface *s, laves__box3 box);
+/* Winding number less one half. */
+double laves__open_excess(const laves__surface *s, laves__vec3 p);
+/* Estimated distance to the cap of a hole when that is less than `distance`, that to the triangles; else INFINITY. uphill
+ * receives the direction in which the excess e at p grows. */
+double laves__open_cap_distance(const laves__surface *s, laves__vec3 p, double e, double distance, laves__vec3 *uphill);
+/* The cap's point along the steepest direction, within reach; guess: its estimated distance. */
+bool laves__open_project(const laves__surface *s, laves__vec3 p, double e, double guess, laves__vec3 uphill, double reach,
+                         laves__vec3 *foot, laves__vec3 *normal);
+/* Whether no cap passes through the ball, given that no triangle does. */
+bool laves__open_ball_is_certain(const laves__surface *s, laves__vec3 p, double e, double radius);
 
 /* ---- oracle ---- */
 

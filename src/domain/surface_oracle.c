@@ -99,7 +99,7 @@ static double closest_part(const laves__surface *s, uint32_t slot, laves__vec3 p
 
 static double measure_part(void *user, uint32_t slot, double distance2, laves__vec3 p) {
   const laves__surface *s = user;
-  if (!(s->face_flags[slot] & LAVES__PARTIAL)) return distance2;
+  if (!s->needs_winding || !(s->face_flags[slot] & LAVES__PARTIAL)) return distance2;
   laves__vec3 foot;
   int on;
   uint32_t other;
@@ -120,9 +120,46 @@ static double signed_distance_by_winding(const laves__surface *s, laves__vec3 p,
   return is_inside(s, p) ? -distance : distance;
 }
 
+/* ---- open surfaces ---- */
+
+static double open_distance(const laves__surface *s, laves__vec3 p, double e, const laves__nearest *n) {
+  const laves__nearest part = (s->face_flags[n->slot] & LAVES__PARTIAL) ? nearest_part(s, p, INFINITY) : *n;
+  const double distance = sqrt(part.slot == LAVES__NONE ? n->distance2 : part.distance2);
+  laves__vec3 uphill;
+  return fmin(distance, laves__open_cap_distance(s, p, e, distance, &uphill));
+}
+
+/* The nearer of the triangles and the caps. */
+static bool open_project(const laves__surface *s, laves__vec3 p, double reach, uint32_t *hint, laves__vec3 *foot,
+                         laves__vec3 *normal) {
+  const laves__nearest n = nearest_part(s, p, reach * reach);
+  const double e = laves__open_excess(s, p), distance = n.slot == LAVES__NONE ? reach : sqrt(n.distance2);
+  laves__vec3 uphill;
+  const double guess = laves__open_cap_distance(s, p, e, distance, &uphill);
+  *hint = n.slot;
+  if (guess < distance && laves__open_project(s, p, e, guess, uphill, distance, foot, normal)) return true;
+  if (n.slot == LAVES__NONE) return false;
+  int on;
+  uint32_t other;
+  closest_part(s, n.slot, p, foot, &on, &other);
+  *normal = s->face_normals[n.slot];
+  return true;
+}
+
+static laves__side open_side(const laves__surface *s, laves__vec3 p, double reach) {
+  const laves__nearest n = nearest(s, p, LAVES__NO_HINT);
+  const double e = laves__open_excess(s, p);
+  if (!(sqrt(n.distance2) > reach * (1 + 1e-9)) || !laves__open_ball_is_certain(s, p, e, reach)) return LAVES__UNDECIDED;
+  return e > 0 ? LAVES__INSIDE : LAVES__OUTSIDE;
+}
+
 /* ---- the oracle ---- */
 
 static double signed_distance(const laves__surface *s, laves__vec3 p, const laves__nearest *n) {
+  if (s->open) {
+    const double e = laves__open_excess(s, p);
+    return e > 0 ? -open_distance(s, p, e, n) : open_distance(s, p, e, n);
+  }
   int on;
   const laves__vec3 foot = laves__triangle_closest(&s->bvh.triangles[n->slot], p, &on);
   if (is_doubtful(s, n->slot, on)) return signed_distance_by_winding(s, p, n);
@@ -143,6 +180,7 @@ static void evaluate(const void *self, size_t count, const laves__vec3 *points, 
 
 static bool project(const void *self, laves__vec3 point, double reach, uint32_t *hint, laves__vec3 *foot, laves__vec3 *normal) {
   const laves__surface *s = self;
+  if (s->open) return open_project(s, point, reach, hint, foot, normal);
   laves__nearest n = nearest_from(s, point, reach * reach, *hint);
   if (n.slot == LAVES__NONE) return false;
   int on;
@@ -161,9 +199,11 @@ static bool project(const void *self, laves__vec3 point, double reach, uint32_t 
 }
 
 static laves__side side(const void *self, laves__vec3 centre, double radius, laves__vec3 half) {
+  const laves__surface *s = self;
+  const double reach = fmin(radius, v3_norm(half));
+  if (s->open) return open_side(s, centre, reach);
   double phi;
   evaluate(self, 1, &centre, &phi, NULL);
-  const double reach = fmin(radius, v3_norm(half));
   /* The margin is for the rounding of distances. */
   if (!(fabs(phi) > reach * (1 + 1e-9))) return LAVES__UNDECIDED;
   return phi < 0 ? LAVES__INSIDE : LAVES__OUTSIDE;
@@ -177,7 +217,7 @@ static int32_t tag(const void *self, laves__vec3 foot, uint32_t hint) {
 
 void laves__surface_oracle(laves__surface *s, laves__oracle *oracle) {
   oracle->self = s;
-  oracle->is_distance = true;
+  oracle->is_distance = !s->open;
   oracle->evaluate = evaluate;
   oracle->project = project;
   oracle->side = side;
@@ -194,6 +234,8 @@ void laves__surface_free(laves_context *context, void *self) {
   laves__free(context, s->tags, s->face_capacity, sizeof *s->tags);
   laves__free(context, s->across, 3 * s->face_capacity, sizeof *s->across);
   laves__winding_free(context, &s->winding);
+  laves__bvh_free(context, &s->rim_tree);
+  laves__free(context, s->rim, s->rim_capacity, sizeof *s->rim);
   laves__bvh_free(context, &s->all);
   laves__free(context, s->face_flags, s->face_capacity, sizeof *s->face_flags);
   laves__free(context, s->doubtful_points, s->point_capacity, sizeof *s->doubtful_points);

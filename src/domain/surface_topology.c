@@ -73,8 +73,24 @@ typedef struct edges {
   laves__surface *s;
   laves_domain_info *info;
   uint32_t *parent;
-  bool closed;
+  bool closed, short_of_memory;
 } edges;
+
+/* Adds an edge whose uses do not balance to the rim, in the direction of which there are too many. */
+static void add_to_rim(edges *e, const use *uses, size_t count, size_t forward) {
+  laves__surface *s = e->s;
+  const bool too_many_forward = 2 * forward > count;
+  size_t excess = too_many_forward ? 2 * forward - count : count - 2 * forward;
+  for (size_t i = 0; i < count && excess > 0; i++) {
+    if ((edge_start(s, uses[i].half) < uses[i].other) != too_many_forward) continue;
+    excess--;
+    if (!laves__grow(s->context, &s->rim, &s->rim_capacity, s->rim_count + 1, sizeof *s->rim)) {
+      e->short_of_memory = true;
+      return;
+    }
+    s->rim[s->rim_count++] = uses[i].half;
+  }
+}
 
 /* All uses of one edge. */
 static void judge_edge(edges *e, const use *uses, size_t count) {
@@ -86,7 +102,10 @@ static void judge_edge(edges *e, const use *uses, size_t count) {
     s->across[uses[i].half] = LAVES__NONE;
   }
   const laves__vec3 place = v3_lerp(s->points[edge_start(s, uses[0].half)], s->points[edge_end(s, uses[0].half)], 0.5);
-  if (2 * forward != count) e->closed = false;
+  if (2 * forward != count) {
+    e->closed = false;
+    add_to_rim(e, uses, count, forward);
+  }
   if (count == 1) note(e->info, LAVES_DEFECT_OPEN_EDGE, place);
   if (count > 2) note(e->info, LAVES_DEFECT_NONMANIFOLD_EDGE, place);
   if (count != 2) return;
@@ -196,8 +215,10 @@ bool laves__surface_topology(laves__surface *s, laves_domain_info *info) {
   if (!starts || !uses || !parent || !s->across || !s->doubtful_points) goto clean_up;
   for (uint32_t f = 0; f < s->face_count; f++) parent[f] = f;
   list_uses(s, starts, uses);
-  edges e = {s, info, parent, true};
+  edges e = {s, info, parent, true, false};
+  s->rim_count = 0;
   judge_edges(&e, starts, uses);
+  if (e.short_of_memory) goto clean_up;
   info->closed = e.closed;
   info->component_count = 0;
   for (uint32_t f = 0; f < s->face_count; f++) info->component_count += parent[f] == f;

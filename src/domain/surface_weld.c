@@ -126,7 +126,7 @@ static void mark_repeats(key *keys, size_t count, bool *repeats) {
 }
 
 /* Faces are laid beside their least point, so that repeats stand in the same short list. */
-static bool find_repeats(laves__surface *s, bool *repeats) {
+static bool find_repeats(laves__surface *s, bool any_direction, bool *repeats) {
   const size_t starts_count = s->point_count + 1;
   uint32_t *starts = laves__alloc_zeroed(s->context, starts_count, sizeof *starts);
   key *keys = laves__alloc(s->context, s->face_count, sizeof *keys);
@@ -140,7 +140,8 @@ static bool find_repeats(laves__surface *s, bool *repeats) {
       starts[p] = sum;
     }
     for (size_t f = s->face_count; f-- > 0;) {
-      const key k = face_key(s->faces[f], (uint32_t)f);
+      key k = face_key(s->faces[f], (uint32_t)f);
+      if (any_direction) k.odd = false;
       keys[--starts[k.low]] = k;
     }
     for (size_t p = 0; p < s->point_count; p++) mark_repeats(&keys[starts[p]], starts[p + 1] - starts[p], repeats);
@@ -150,10 +151,10 @@ static bool find_repeats(laves__surface *s, bool *repeats) {
   return done;
 }
 
-static bool drop_repeats(laves__surface *s, laves_domain_info *info) {
+bool laves__surface_drop_repeats(laves__surface *s, bool any_direction, laves_domain_info *info) {
   const size_t count = s->face_count;
   bool *repeats = laves__alloc(s->context, count, sizeof *repeats);
-  const bool done = repeats && find_repeats(s, repeats);
+  const bool done = repeats && find_repeats(s, any_direction, repeats);
   if (done) {
     size_t kept = 0;
     for (size_t f = 0; f < count; f++) {
@@ -193,7 +194,7 @@ bool laves__surface_weld(laves__surface *s, const laves__surface_input *input, l
   if (!find_equal_points(s, points, used, count, first, info)) goto clean_up;
   number_points(s, points, used, count, first, info);
   copy_faces(s, input, first, info);
-  done = drop_repeats(s, info);
+  done = laves__surface_drop_repeats(s, false, info);
 clean_up:
   laves__free(context, points, count, sizeof *points);
   laves__free(context, used, count, sizeof *used);
