@@ -17,8 +17,8 @@ enum { ROUND_DEPTH = 4, LAST_DEPTH = 6, ROUND_LIMIT = 200 };
 
 /* The least part of some width by which a round must shrink the box to be worth another. */
 static const double worthwhile = 0.05;
-/* Instructions that the search may take, about 2 seconds; what is then undecided counts as solid. */
-static const double instruction_limit = 4e8;
+/* Instructions that the search may take, about half a second; what is then undecided counts as solid. */
+static const double instruction_limit = 1e8;
 /* Room for the rounding of the map to t, as a fraction of the box. */
 static const double map_slack = 1e-12;
 

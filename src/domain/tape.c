@@ -7,8 +7,8 @@
 
 #include "domain/elementary.h"
 
-/* Doubles in the register block of a run: 128 KiB. */
-enum { SCRATCH = 4 * LAVES__REGISTER_LIMIT, BATCH = 256 };
+/* Doubles in the register block of a run: 128 KiB, or 2 KiB for a few points. */
+enum { SCRATCH = 4 * LAVES__REGISTER_LIMIT, BATCH = 256, FEW = 256 };
 
 /* The same loops for wider vectors where the machine has them; without fused multiply-add, so with the same bits.
  * Sanitizers start too late for the resolvers of clones. */
@@ -259,9 +259,9 @@ static double tamed(double value) {
   return value >= -LAVES__TAPE_NOWHERE ? value : -LAVES__TAPE_NOWHERE;
 }
 
-void laves__tape_evaluate(const laves__tape *tape, size_t count, const laves__vec3 *points, double *values) {
-  _Alignas(64) double block[SCRATCH];
-  const size_t fits = SCRATCH / tape->register_count, batch = fits < BATCH ? fits : BATCH;
+/* `block` has room for `batch` points at a time. */
+static void run_batches(const laves__tape *tape, size_t count, const laves__vec3 *points, double *values, double *block,
+                        size_t batch) {
   const size_t last = tape->instructions[tape->count - 1].out;
   for (size_t begin = 0; begin < count; begin += batch) {
     const size_t n = count - begin < batch ? count - begin : batch;
@@ -273,4 +273,22 @@ void laves__tape_evaluate(const laves__tape *tape, size_t count, const laves__ve
     run_batch(tape, n, block);
     for (size_t i = 0; i < n; i++) values[begin + i] = tamed(block[last * n + i]);
   }
+}
+
+static void run_many(const laves__tape *tape, size_t count, const laves__vec3 *points, double *values) {
+  _Alignas(64) double block[SCRATCH];
+  const size_t fits = SCRATCH / tape->register_count;
+  run_batches(tape, count, points, values, block, fits < BATCH ? fits : BATCH);
+}
+
+static void run_few(const laves__tape *tape, size_t count, const laves__vec3 *points, double *values) {
+  double block[FEW];
+  run_batches(tape, count, points, values, block, count);
+}
+
+void laves__tape_evaluate(const laves__tape *tape, size_t count, const laves__vec3 *points, double *values) {
+  if (count <= BATCH && count * tape->register_count <= FEW)
+    run_few(tape, count, points, values);
+  else
+    run_many(tape, count, points, values);
 }

@@ -11,6 +11,8 @@
 
 /* The most registers a tape may use; one run keeps them on its stack (128 KiB in all). */
 #define LAVES__REGISTER_LIMIT 4096
+/* Runs of tapes with up to this many registers touch little of the stack. */
+#define LAVES__REGISTERS_FEW 64
 
 /* An operand is a register, or the constant of the instruction. */
 enum { LAVES__OPERAND_CONSTANT = 0xffff };

@@ -113,8 +113,7 @@ static inline dual apply(const laves__tape *tape, const laves__instruction *p, d
   }
 }
 
-laves__dual laves__tape_gradient(const laves__tape *tape, laves__vec3 point) {
-  dual registers[LAVES__REGISTER_LIMIT];
+static dual run(const laves__tape *tape, laves__vec3 point, dual *registers) {
   registers[0] = with(point.x, v3(1, 0, 0));
   registers[1] = with(point.y, v3(0, 1, 0));
   registers[2] = with(point.z, v3(0, 0, 1));
@@ -129,4 +128,18 @@ laves__dual laves__tape_gradient(const laves__tape *tape, laves__vec3 point) {
   }
   if (!v3_finite(result.gradient)) result.gradient = v3(0, 0, 0); /* an overflow on the way */
   return result;
+}
+
+static dual run_large(const laves__tape *tape, laves__vec3 point) {
+  dual registers[LAVES__REGISTER_LIMIT];
+  return run(tape, point, registers);
+}
+
+static dual run_small(const laves__tape *tape, laves__vec3 point) {
+  dual registers[LAVES__REGISTERS_FEW];
+  return run(tape, point, registers);
+}
+
+laves__dual laves__tape_gradient(const laves__tape *tape, laves__vec3 point) {
+  return tape->register_count <= LAVES__REGISTERS_FEW ? run_small(tape, point) : run_large(tape, point);
 }

@@ -184,8 +184,7 @@ static laves__interval apply(const laves__tape *tape, const laves__instruction *
 
 static bool is_finite(laves__interval a) { return isfinite(a.lower) && isfinite(a.upper); }
 
-laves__interval laves__tape_interval(const laves__tape *tape, laves__box3 box, bool *may_be_nan) {
-  laves__interval registers[LAVES__REGISTER_LIMIT];
+static laves__interval run(const laves__tape *tape, laves__box3 box, bool *may_be_nan, laves__interval *registers) {
   registers[0] = (laves__interval){box.lower.x, box.upper.x};
   registers[1] = (laves__interval){box.lower.y, box.upper.y};
   registers[2] = (laves__interval){box.lower.z, box.upper.z};
@@ -206,4 +205,18 @@ laves__interval laves__tape_interval(const laves__tape *tape, laves__box3 box, b
     registers[p->out] = result;
   }
   return result;
+}
+
+static laves__interval run_large(const laves__tape *tape, laves__box3 box, bool *may_be_nan) {
+  laves__interval registers[LAVES__REGISTER_LIMIT];
+  return run(tape, box, may_be_nan, registers);
+}
+
+static laves__interval run_small(const laves__tape *tape, laves__box3 box, bool *may_be_nan) {
+  laves__interval registers[LAVES__REGISTERS_FEW];
+  return run(tape, box, may_be_nan, registers);
+}
+
+laves__interval laves__tape_interval(const laves__tape *tape, laves__box3 box, bool *may_be_nan) {
+  return tape->register_count <= LAVES__REGISTERS_FEW ? run_small(tape, box, may_be_nan) : run_large(tape, box, may_be_nan);
 }
