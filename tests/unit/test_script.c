@@ -168,6 +168,28 @@ static void scripts_mean_the_same_on_every_run(void **state) {
   drop(&o);
 }
 
+/* Each block of Lua in the manual makes a solid. */
+static void examples_of_the_manual_run(void **state) {
+  (void)state;
+  FILE *file = fopen("docs/implicit.md", "rb");
+  assert_non_null(file);
+  static char manual[100000];
+  const size_t length = fread(manual, 1, sizeof manual - 1, file);
+  fclose(file);
+  manual[length] = 0;
+  int count = 0;
+  for (char *begin = strstr(manual, "```lua\n"); begin; begin = strstr(begin, "```lua\n"), count++) {
+    begin += strlen("```lua\n");
+    char *end = strstr(begin, "```");
+    assert_non_null(end);
+    *end = 0;
+    made m = make(begin, false);
+    drop(&m);
+    begin = end + 1;
+  }
+  assert_in_range(count, 5, 100);
+}
+
 /* ---- messages ---- */
 
 typedef struct mistake {
@@ -303,10 +325,11 @@ static void progress_can_cancel_a_script(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(words_mean_what_the_manual_says),    cmocka_unit_test(scripts_are_programs),
-      cmocka_unit_test(scripts_mean_the_same_on_every_run), cmocka_unit_test(mistakes_are_explained),
-      cmocka_unit_test(dangerous_words_are_absent),         cmocka_unit_test(limits_end_runaway_scripts),
-      cmocka_unit_test(memory_limit_is_the_contexts),       cmocka_unit_test(progress_can_cancel_a_script),
+      cmocka_unit_test(words_mean_what_the_manual_says), cmocka_unit_test(scripts_are_programs),
+      cmocka_unit_test(examples_of_the_manual_run),      cmocka_unit_test(scripts_mean_the_same_on_every_run),
+      cmocka_unit_test(mistakes_are_explained),          cmocka_unit_test(dangerous_words_are_absent),
+      cmocka_unit_test(limits_end_runaway_scripts),      cmocka_unit_test(memory_limit_is_the_contexts),
+      cmocka_unit_test(progress_can_cancel_a_script),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
