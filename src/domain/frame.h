@@ -36,7 +36,7 @@ laves__side laves__frame_side(const laves__frame *frame, laves__vec3 centre, dou
 laves__mat3 laves__principal_axes(const laves__oracle *oracle);
 
 /* The volume of the solid: the oracle's where it knows it, else quasi-Monte Carlo in the cells of an octree that the
- * surface may cross (paper, section 4.2); relative error below about 0.3 % for compact solids. */
+ * surface may cross (paper, section 4.2); relative error below about 0.5 % for compact solids. */
 double laves__domain_volume(const laves__oracle *oracle);
 
 #endif
