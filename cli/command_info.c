@@ -60,10 +60,16 @@ static void say_thin(const info_run *all) {
   }
 }
 
+/* Three digits: an estimate has no more. */
+static uint64_t about(double count) {
+  const double step = count >= 1000 ? pow(10, floor(log10(count)) - 2) : 1;
+  return (uint64_t)(step * round(count / step));
+}
+
 static void say_cost(const info_run *all) {
   text_buffer tets, vertices, bytes, seconds;
-  text_say("at size %.4g: about %s, %s, %s, %s of one core", all->cost.size, text_plural(&tets, (uint64_t)all->cost.tets, "tet"),
-           text_plural(&vertices, (uint64_t)all->cost.vertices, "vertex"), text_bytes(&bytes, all->cost.bytes),
+  text_say("at size %.4g: about %s, %s, %s, %s of one core", all->cost.size, text_plural(&tets, about(all->cost.tets), "tet"),
+           text_plural(&vertices, about(all->cost.vertices), "vertex"), text_bytes(&bytes, all->cost.bytes),
            text_seconds(&seconds, all->cost.cpu_seconds));
 }
 
@@ -71,7 +77,7 @@ static laves_result info_steps(session *run, info_run *all) {
   laves_result result = outputs_check_json(run, run->given->input);
   if (result == LAVES_OK) result = input_open(run, run->given->input, &all->in);
   if (result != LAVES_OK) return result;
-  all->has_cost = estimate_make(&all->in, run->given, &all->cost);
+  all->has_cost = estimate_make(run, &all->in, &all->cost);
   const double start = progress_now();
   all->thin_count = laves_domain_thin_places(all->in.domain, all->thin, THIN_CAPACITY);
   all->thin_seconds = progress_now() - start;

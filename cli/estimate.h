@@ -12,9 +12,9 @@ typedef struct estimate {
   double bytes, cpu_seconds; /* of meshing, rough */
 } estimate;
 
-/* @param given  the size options; none: about 50 thousand tets
+/* By the size options of the run; without one: about 50 thousand tets. Takes about a second at most.
  * @return false when the domain is empty as far as the samples tell */
-bool estimate_make(const input *in, const settings *given, estimate *result);
+bool estimate_make(session *run, const input *in, estimate *result);
 
 void estimate_write_json(json *out, const estimate *result);
 

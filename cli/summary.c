@@ -16,13 +16,13 @@ static void say_defects(const laves_domain_info *info, bool all) {
     if (info->defects[i] == 0) continue;
     const char *what = laves_defect_text((laves_defect)i);
     if (all) {
-      text_say("  %zu %s, the first at %s", info->defects[i], what, text_place(&place, info->defect_place[i]));
+      text_say("  %s: %zu, the first at %s", what, info->defects[i], text_place(&place, info->defect_place[i]));
       continue;
     }
     const size_t used = strlen(line);
-    snprintf(line + used, sizeof line - used, "%s%zu %s", used ? ", " : "", info->defects[i], what);
+    snprintf(line + used, sizeof line - used, "%s%s: %zu", used ? ", " : "", what, info->defects[i]);
   }
-  if (line[0]) text_say("  defects: %s (places: laves info)", line);
+  if (line[0]) text_say("  defects (places: laves info): %s", line);
 }
 
 static void say_surface(const input *in) {
