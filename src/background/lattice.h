@@ -33,6 +33,7 @@ typedef struct laves__brick {
 typedef struct laves__record {
   int32_t xyz[3];                   /* the cell */
   int32_t around[27];               /* the cells around as in laves__brick.cell; 13 is the record itself */
+  double centre_phi;                /* at the centre of the cell, where phi is a distance; 0: not known */
   double phi[LAVES__C15_SITES];     /* in sizes; HUGE_VAL times the sign where only the sign is known */
   uint32_t hint[LAVES__C15_SITES];  /* for laves__frame_project */
   int8_t sign[LAVES__C15_SITES];    /* of phi: -1 or 1 */

@@ -21,6 +21,7 @@ typedef struct carving {
   laves__lattice *lattice;
   undecided list;
   int8_t *cell_side;   /* [list.count][LAVES__BRICK_CELLS] */
+  double *cell_phi;    /* the same for the centres of undecided cells, where phi is a distance; else NULL */
   size_t first_record; /* of those to evaluate */
   bool out_of_memory;
 } carving;
@@ -92,6 +93,49 @@ static void carve_cells(void *user, size_t begin, size_t end, int worker) {
     }
 }
 
+/* The distance from which a cube of cells, widened by the longest edge, lies on one side. */
+static double decisive_distance(int cells) {
+  static const double half_diagonal = 0.8660254037844387;
+  return (cells * LAVES__CELL_SIDE * half_diagonal + LAVES__C15_LONGEST_EDGE) * (1 + 1e-6);
+}
+
+/* The same where phi is a distance: blocks of 2 x 2 x 2 cells first, then the cells of those that it leaves open. */
+static void carve_cells_by_distance(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  enum { BLOCK = 2, BLOCKS = 8, SIDE = LAVES__BRICK_SIDE };
+  carving *c = user;
+  const double half = 0.5 * LAVES__CELL_SIDE;
+  for (size_t brick = begin; brick < end; brick++) {
+    laves__vec3 centre[BLOCKS];
+    double phi[BLOCKS];
+    for (int block = 0; block < BLOCKS; block++) {
+      int32_t cell[3];
+      cell_of(c, brick, BLOCK * ((block & 1) + SIDE * ((block >> 1 & 1) + SIDE * (block >> 2))), cell);
+      const laves__vec3 corner = laves__site_position(cell, 0);
+      centre[block] = v3(corner.x + BLOCK * half, corner.y + BLOCK * half, corner.z + BLOCK * half);
+    }
+    laves__frame_evaluate(c->frame, BLOCKS, centre, phi, NULL);
+    for (int block = 0; block < BLOCKS; block++) {
+      const int first = BLOCK * ((block & 1) + SIDE * ((block >> 1 & 1) + SIDE * (block >> 2)));
+      const bool open = !(fabs(phi[block]) > decisive_distance(BLOCK));
+      laves__vec3 cell_centre[BLOCKS];
+      double cell_phi[BLOCKS];
+      for (int i = 0; i < BLOCKS; i++)
+        cell_centre[i] = v3(centre[block].x + (i & 1 ? half : -half), centre[block].y + (i >> 1 & 1 ? half : -half),
+                            centre[block].z + (i >> 2 ? half : -half));
+      if (open) laves__frame_evaluate(c->frame, BLOCKS, cell_centre, cell_phi, NULL);
+      for (int i = 0; i < BLOCKS; i++) {
+        const size_t at = brick * LAVES__BRICK_CELLS + (size_t)(first + (i & 1) + SIDE * ((i >> 1 & 1) + SIDE * (i >> 2)));
+        const double value = open ? cell_phi[i] : phi[block];
+        c->cell_phi[at] = value;
+        c->cell_side[at] = open && !(fabs(value) > decisive_distance(1)) ? LAVES__UNDECIDED
+                           : value < 0                                   ? LAVES__INSIDE
+                                                                         : LAVES__OUTSIDE;
+      }
+    }
+  }
+}
+
 /* Bricks and records for what could not be decided. Serial, so that records have the same numbers in every run. */
 static bool make_records(carving *c) {
   laves__lattice *l = c->lattice;
@@ -110,58 +154,79 @@ static bool make_records(carving *c) {
     for (int inside = 0; inside < LAVES__BRICK_CELLS; inside++) {
       int32_t cell[3];
       cell_of(c, brick, inside, cell);
-      if (side[inside] == LAVES__UNDECIDED && laves__lattice_add_record(l, cell[0], cell[1], cell[2]) < 0) return false;
+      if (side[inside] != LAVES__UNDECIDED) continue;
+      const int32_t record = laves__lattice_add_record(l, cell[0], cell[1], cell[2]);
+      if (record < 0) return false;
+      if (c->cell_phi) l->record[record].centre_phi = c->cell_phi[brick * LAVES__BRICK_CELLS + (size_t)inside];
     }
   }
   return true;
 }
 
-/* Sites asked first, spread over the cell: the face-centred cubic lattice of colour 0. */
-enum { PROBES = 4 };
+/* Sites are asked in groups; the first is spread over the cell: the face-centred cubic lattice of colour 0. */
+enum { GROUP = 4 };
+
+/* Values known in and around a cell. */
+typedef struct speakers {
+  laves__vec3 at[LAVES__C15_SITES + 1];
+  double value[LAVES__C15_SITES + 1];
+  int count;
+} speakers;
 
 /* Whether a value already known speaks for the point; then *phi has its sign and infinite size. */
-static bool spoken_for(const laves__vec3 *at, const double *value, int known, laves__vec3 point, double *phi) {
-  for (int u = 0; u < known; u++) {
-    const double room = fabs(value[u]) - LAVES__C15_LONGEST_EDGE * (1 + 1e-6);
-    if (room > 0 && room * room > v3_norm2(v3_sub(at[u], point))) {
-      *phi = value[u] < 0 ? -HUGE_VAL : HUGE_VAL;
+static bool spoken_for(const speakers *s, laves__vec3 point, double *phi) {
+  for (int u = 0; u < s->count; u++) {
+    const double room = fabs(s->value[u]) - LAVES__C15_LONGEST_EDGE * (1 + 1e-6);
+    if (room > 0 && room * room > v3_norm2(v3_sub(s->at[u], point))) {
+      *phi = s->value[u] < 0 ? -HUGE_VAL : HUGE_VAL;
       return true;
     }
   }
   return false;
 }
 
-static void evaluate_record(const laves__frame *frame, laves__record *r) {
-  laves__vec3 at[LAVES__C15_SITES];
-  double value[LAVES__C15_SITES];
-  uint32_t hint[LAVES__C15_SITES];
-  uint8_t site_of[LAVES__C15_SITES];
-  for (int site = 0; site < LAVES__C15_SITES; site++) {
-    at[site] = laves__site_position(r->xyz, site);
-    site_of[site] = (uint8_t)site;
+static void evaluate_by_distance(const laves__frame *frame, laves__record *r) {
+  speakers s = {.count = 0};
+  const double half = 0.5 * LAVES__CELL_SIDE;
+  const laves__vec3 corner = laves__site_position(r->xyz, 0);
+  if (r->centre_phi != 0) {
+    s.at[0] = v3(corner.x + half, corner.y + half, corner.z + half);
+    s.value[0] = r->centre_phi;
+    s.count = 1;
   }
-  int asked = LAVES__C15_SITES;
-  if (!frame->oracle->is_distance) {
-    laves__frame_evaluate(frame, LAVES__C15_SITES, at, value, hint);
-  } else {
-    laves__frame_evaluate(frame, PROBES, at, value, hint);
-    asked = PROBES;
-    for (int site = PROBES; site < LAVES__C15_SITES; site++) {
-      double phi;
-      if (spoken_for(at, value, PROBES, at[site], &phi)) {
-        r->phi[site] = phi;
-        continue;
-      }
-      at[asked] = at[site];
-      site_of[asked++] = (uint8_t)site;
+  for (int first = 0; first < LAVES__C15_SITES; first += GROUP) {
+    laves__vec3 at[GROUP];
+    double value[GROUP];
+    uint32_t hint[GROUP];
+    int site_of[GROUP], asked = 0;
+    for (int site = first; site < first + GROUP; site++) {
+      const laves__vec3 p = laves__site_position(r->xyz, site);
+      if (spoken_for(&s, p, &r->phi[site])) continue;
+      at[asked] = p;
+      site_of[asked++] = site;
     }
-    laves__frame_evaluate(frame, (size_t)(asked - PROBES), at + PROBES, value + PROBES, hint + PROBES);
+    if (asked) laves__frame_evaluate(frame, (size_t)asked, at, value, hint);
+    for (int i = 0; i < asked; i++) {
+      r->phi[site_of[i]] = value[i];
+      r->hint[site_of[i]] = hint[i];
+      s.at[s.count] = at[i];
+      s.value[s.count++] = value[i];
+    }
   }
-  for (int i = 0; i < asked; i++) {
-    r->phi[site_of[i]] = isnan(value[i]) ? HUGE_VAL : value[i]; /* what has no value is not inside */
-    r->hint[site_of[i]] = hint[i];
+}
+
+static void evaluate_record(const laves__frame *frame, laves__record *r) {
+  if (frame->oracle->is_distance) {
+    evaluate_by_distance(frame, r);
+  } else {
+    laves__vec3 at[LAVES__C15_SITES];
+    for (int site = 0; site < LAVES__C15_SITES; site++) at[site] = laves__site_position(r->xyz, site);
+    laves__frame_evaluate(frame, LAVES__C15_SITES, at, r->phi, r->hint);
   }
-  for (int site = 0; site < LAVES__C15_SITES; site++) r->sign[site] = r->label[site] = r->phi[site] < 0 ? -1 : 1;
+  for (int site = 0; site < LAVES__C15_SITES; site++) {
+    if (isnan(r->phi[site])) r->phi[site] = HUGE_VAL; /* what has no value is not inside */
+    r->sign[site] = r->label[site] = r->phi[site] < 0 ? -1 : 1;
+  }
 }
 
 static void evaluate_records(void *user, size_t begin, size_t end, int worker) {
@@ -278,8 +343,11 @@ laves_result laves__classify(const laves__frame *frame, laves__lattice *lattice,
   bool done = carve_bricks(&c, (int32_t[3]){0, 0, 0}, span);
   if (done) {
     c.cell_side = laves__alloc(context, c.list.count, LAVES__BRICK_CELLS);
-    c.out_of_memory = !c.cell_side;
-    done = c.cell_side && laves__parallel_for(context, "classify", c.list.count, 1, carve_cells, &c);
+    const bool by_distance = frame->oracle->is_distance;
+    if (by_distance) c.cell_phi = laves__alloc(context, c.list.count * LAVES__BRICK_CELLS, sizeof *c.cell_phi);
+    c.out_of_memory = !c.cell_side || (by_distance && !c.cell_phi);
+    done = !c.out_of_memory &&
+           laves__parallel_for(context, "classify", c.list.count, 1, by_distance ? carve_cells_by_distance : carve_cells, &c);
     if (done && !make_records(&c)) {
       c.out_of_memory = true;
       done = false;
@@ -295,6 +363,7 @@ laves_result laves__classify(const laves__frame *frame, laves__lattice *lattice,
     result = laves__fail(error, LAVES_ERROR_INPUT,
                          "the solid reaches beyond its bounds near (%g, %g, %g); give bounds that contain it", at.x, at.y, at.z);
   }
+  laves__free(context, c.cell_phi, c.list.count * LAVES__BRICK_CELLS, sizeof *c.cell_phi);
   laves__free(context, c.cell_side, c.list.count, LAVES__BRICK_CELLS);
   laves__free(context, c.list.brick, c.list.capacity, sizeof *c.list.brick);
   return result;

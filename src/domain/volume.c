@@ -2,12 +2,14 @@
  *
  * An octree is cut down while the oracle can't decide; decided boxes count exactly, and the boxes that remain are sampled
  * with the R3 sequence of [roberts2018], a Kronecker sequence of low discrepancy, so the error falls nearly as 1/n and is
- * confined to a thin layer around the surface. Where phi is a distance, one value stands for a whole box. (Paper, section 4.2, which samples the whole bounding box.) */
+ * confined to a thin layer around the surface. Where phi is a distance, one value stands for a whole box. (Paper, section 4.2,
+ * which samples the whole bounding box.) */
 #include "domain/frame.h"
 
 enum {
-  LEVELS = 5,        /* of the octree: 32 boxes along each axis at the end */
-  LEAF_SAMPLES = 16, /* in each undecided box */
+  LEVELS = 5,          /* of the octree: 32 boxes along each axis at the end */
+  DISTANCE_LEVELS = 6, /* where one value stands for a box */
+  LEAF_SAMPLES = 16,   /* in each undecided box */
   AXES_SAMPLES = 4096,
   CHUNK = 64,
 };
@@ -54,7 +56,7 @@ static double box_volume(const laves__oracle *oracle, laves__box3 box, int level
     case LAVES__UNDECIDED:
       break;
   }
-  if (level == LEVELS)
+  if (level == (oracle->is_distance ? DISTANCE_LEVELS : LEVELS))
     return volume * (oracle->is_distance ? balanced_share(oracle, centre, volume) : sampled_share(oracle, &box));
   double sum = 0;
   for (int child = 0; child < 8; child++) {

@@ -207,32 +207,49 @@ static void fit_star(const laves__frame *frame, const laves__layer *layer, int32
   }
 }
 
-static bool contract(const laves__frame *frame, const laves__measure *m, double target, laves__layer *layer, int32_t a, int32_t b,
-                     int rounds, laves__journal *j) {
+typedef struct contraction {
+  const laves__frame *frame;
+  const laves__measure *measure;
+  double target;
+  int rounds; /* of smoothing */
+} contraction;
+
+/* Merges and smooths; false when the worst did not rise. The caller undoes or keeps. */
+static bool try_contraction(const contraction *c, laves__layer *layer, int32_t a, int32_t b, const ring *r, double before,
+                            laves__journal *j) {
+  laves__journal_clear(j);
+  if (!merge(layer, a, b, r, j) || layer->star[a].count == 0) return false;
+  if (!measure_star(c->measure, layer, a, fmax(LAVES__FLAT, hopeless * before))) return false;
+  laves__smooth_vertex(c->frame, c->measure, c->target, layer, a, j);
+  if (!(laves__star_quality(layer, a) > promising * before)) return false;
+  for (int round = 0; round < c->rounds; round++) smooth_around(c->frame, c->measure, c->target, layer, a, j);
+  return worst_touched(layer, j) > before;
+}
+
+static bool fits(const fit *f, const fit *limit) { return f->deviation <= limit->deviation && f->alignment >= limit->alignment; }
+
+/* Whether the boundary around a, just changed, lies well enough to the surface: within the limits or, which is looked at
+ * only when it does not, as well as before. For the latter the change is undone, looked at, and made again. */
+static bool keeps_surface(const contraction *c, laves__layer *layer, int32_t a, int32_t b, const ring *r, double before,
+                          laves__journal *j) {
+  const fit limit = {deviation_max, alignment_min};
+  fit now = {0, 1}, earlier = limit;
+  fit_star(c->frame, layer, a, &now);
+  if (fits(&now, &limit)) return true;
+  laves__journal_undo(j, layer);
+  fit_star(c->frame, layer, a, &earlier);
+  if (layer->depth[b] == 0) fit_star(c->frame, layer, b, &earlier);
+  return fits(&now, &earlier) && try_contraction(c, layer, a, b, r, before, j);
+}
+
+static bool contract(const contraction *c, laves__layer *layer, int32_t a, int32_t b, laves__journal *j) {
   if (!laves__layer_moves(layer, a) || !laves__layer_moves(layer, b)) return false;
   if (layer->depth[b] == 0 && layer->depth[a] != 0) return false;
   ring r;
   if (!find_ring(layer, a, b, &r) || !keeps_topology(layer, a, b, &r)) return false;
   const double before = fmin(laves__star_quality(layer, a), laves__star_quality(layer, b));
-  fit old_fit = {deviation_max, alignment_min};
-  if (layer->depth[b] == 0) fit_star(frame, layer, b, &old_fit);
-  if (layer->depth[a] == 0) fit_star(frame, layer, a, &old_fit);
-  laves__journal_clear(j);
-  bool good =
-      merge(layer, a, b, &r, j) && layer->star[a].count > 0 && measure_star(m, layer, a, fmax(LAVES__FLAT, hopeless * before));
-  if (good) {
-    laves__smooth_vertex(frame, m, target, layer, a, j);
-    good = laves__star_quality(layer, a) > promising * before;
-  }
-  if (good) {
-    for (int round = 0; round < rounds; round++) smooth_around(frame, m, target, layer, a, j);
-    good = worst_touched(layer, j) > before;
-  }
-  if (good && layer->depth[a] == 0) {
-    fit new_fit = {0, 1};
-    fit_star(frame, layer, a, &new_fit);
-    good = new_fit.deviation <= old_fit.deviation && new_fit.alignment >= old_fit.alignment;
-  }
+  const bool good =
+      try_contraction(c, layer, a, b, &r, before, j) && (layer->depth[a] != 0 || keeps_surface(c, layer, a, b, &r, before, j));
   if (!good) laves__journal_undo(j, layer);
   laves__journal_clear(j);
   return good;
@@ -240,6 +257,7 @@ static bool contract(const laves__frame *frame, const laves__measure *m, double 
 
 bool laves__contract_tet(const laves__frame *frame, const laves__measure *m, double target, laves__layer *layer, int32_t tet,
                          int rounds, laves__journal *journal) {
+  const contraction c = {frame, m, target, rounds};
   int order[6];
   double length[6];
   for (int e = 0; e < 6; e++) {
@@ -253,7 +271,7 @@ bool laves__contract_tet(const laves__frame *frame, const laves__measure *m, dou
     for (int direction = 0; direction < 2; direction++) {
       const int32_t a = layer->tet[tet][laves__tet_edge[order[e]][direction]];
       const int32_t b = layer->tet[tet][laves__tet_edge[order[e]][1 - direction]];
-      if (contract(frame, m, target, layer, a, b, rounds, journal)) return true;
+      if (contract(&c, layer, a, b, journal)) return true;
     }
   return false;
 }
