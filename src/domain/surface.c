@@ -193,7 +193,7 @@ static bool solve_union(laves__surface *s, laves__crossings *c, laves_domain_inf
   mark_doubtful(s);
   if (!laves__surface_find_segments(s, c)) goto clean_up;
   laves__surface_measure(s, &info->volume, &info->area);
-  if (c->count > 0) info->volume = NAN;
+  if (c->count > 0) info->volume = laves__surface_union_volume(s);
   done = true;
 clean_up:
   laves__free(s->context, keep, count, sizeof *keep);

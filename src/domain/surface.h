@@ -9,6 +9,7 @@
  *   surface_patch.c     which triangles bound the union of what is enclosed
  *   surface_mend.c      cracks, repeats and directions of surfaces that are not closed
  *   surface_open.c      what stays open: {winding number = 1/2}
+ *   surface_sample.c    samples, thin places
  *   surface_oracle.c    sign, distance, projection
  *
  * Coordinates are local everywhere: input minus origin. */
@@ -79,6 +80,14 @@ void laves__bvh_nearest_part(const laves__bvh *bvh, laves__vec3 p, laves__measur
 /* Calls fn for every slot from `least` on whose triangle's leaf overlaps the box (units of the surface). */
 typedef void laves__slot_fn(void *user, uint32_t slot);
 void laves__bvh_overlaps(const laves__bvh *bvh, laves__box3 box, laves__slot_fn *fn, void *user);
+
+typedef struct laves__hit {
+  double distance;
+  uint32_t slot; /* LAVES__NONE: no triangle nearer than the start value of distance */
+} laves__hit;
+
+/* The first triangle on the ray from `origin` along the unit vector `direction`, other than `skip`. */
+void laves__bvh_shoot(const laves__bvh *bvh, laves__vec3 origin, laves__vec3 direction, uint32_t skip, laves__hit *hit);
 
 /* ---- winding number ---- */
 
@@ -210,7 +219,18 @@ bool laves__open_project(const laves__surface *s, laves__vec3 p, double e, doubl
 /* Whether no cap passes through the ball, given that no triangle does. */
 bool laves__open_ball_is_certain(const laves__surface *s, laves__vec3 p, double e, double radius);
 
+/* ---- samples ---- */
+
+/* Functions of the oracle. */
+size_t laves__surface_sample(const void *self, double spacing, laves__vec3 *points, size_t capacity);
+size_t laves__surface_thin_places(const void *self, laves_thin_place *places, size_t capacity);
+/* Volume of a closed surface that meets itself: partial faces count by the parts of them that bound the solid. */
+double laves__surface_union_volume(const laves__surface *s);
+
 /* ---- oracle ---- */
+
+/* Whether face `slot` bounds the solid at its point q. */
+bool laves__surface_bounds_at(const laves__surface *s, uint32_t slot, laves__vec3 q);
 
 /* The last step: s is ready, its functions go into the oracle. */
 void laves__surface_oracle(laves__surface *s, laves__oracle *oracle);

@@ -441,3 +441,82 @@ void laves__bvh_overlaps(const laves__bvh *bvh, laves__box3 region, laves__slot_
     }
   }
 }
+
+/* ---- rays ---- */
+
+typedef struct ray {
+  laves__vec3 origin, direction;
+  float start[3], per_step[3]; /* in units of the tree; per_step is one over the direction */
+} ray;
+
+/* A step nearly along a side of boxes must not divide by zero; boxes are wider than what this bends the ray by. */
+static float inverse(double x) {
+  const float tiny = 1e-12f;
+  return 1 / (fabs(x) > (double)tiny ? (float)x : x < 0 ? -tiny : tiny);
+}
+
+static inline float4 lesser(float4 a, float4 b) {
+  const int4 less = a < b;
+  return (float4)(((int4)a & less) | ((int4)b & ~less));
+}
+
+static inline float4 greater(float4 a, float4 b) {
+  const int4 more = a > b;
+  return (float4)(((int4)a & more) | ((int4)b & ~more));
+}
+
+/* Which of the four boxes the ray meets before `farthest`. */
+static inline int4 boxes_met(const laves__bvh_node *n, const ray *r, float farthest) {
+  const float4 *centre = (const float4 *)n->centre, *half = (const float4 *)n->half;
+  float4 enter = {0, 0, 0, 0}, leave = {farthest, farthest, farthest, farthest};
+  for (int k = 0; k < 3; k++) {
+    const float4 a = (centre[k] - half[k] - r->start[k]) * r->per_step[k];
+    const float4 b = (centre[k] + half[k] - r->start[k]) * r->per_step[k];
+    enter = greater(enter, lesser(a, b));
+    leave = lesser(leave, greater(a, b));
+  }
+  return enter <= leave * limit_slack;
+}
+
+/* Where the ray passes through t: the distance, or INFINITY.  Moeller and Trumbore, "Fast, minimum storage ray-triangle
+ * intersection", 1997. */
+static double pass(const laves__triangle *t, const ray *r) {
+  const laves__vec3 ab = v3_sub(t->b, t->a), ac = v3_sub(t->c, t->a), h = v3_cross(r->direction, ac);
+  const double det = v3_dot(ab, h);
+  if (det == 0) return INFINITY;
+  const laves__vec3 at = v3_sub(r->origin, t->a), q = v3_cross(at, ab);
+  const double u = v3_dot(at, h) / det, v = v3_dot(r->direction, q) / det, distance = v3_dot(ac, q) / det;
+  return u >= 0 && v >= 0 && u + v <= 1 && distance > 0 ? distance : INFINITY;
+}
+
+static void pass_leaf(const laves__bvh *bvh, uint32_t child, const ray *r, uint32_t skip, laves__hit *hit) {
+  const uint32_t first = child & 0x0fffffffu, last = first + (child >> 28 & 7);
+  for (uint32_t slot = first; slot <= last; slot++) {
+    const double distance = slot == skip ? INFINITY : pass(&bvh->triangles[slot], r);
+    if (distance < hit->distance || (distance == hit->distance && slot < hit->slot && isfinite(distance)))
+      *hit = (laves__hit){distance, slot};
+  }
+}
+
+void laves__bvh_shoot(const laves__bvh *bvh, laves__vec3 origin, laves__vec3 direction, uint32_t skip, laves__hit *hit) {
+  const laves__vec3 start = v3_scale(origin, bvh->scale);
+  const ray r = {origin,
+                 direction,
+                 {(float)start.x, (float)start.y, (float)start.z},
+                 {inverse(direction.x), inverse(direction.y), inverse(direction.z)}};
+  uint32_t stack[LAVES__BVH_STACK];
+  int top = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    const laves__bvh_node *n = &bvh->nodes[stack[--top]];
+    const double farthest = hit->distance * bvh->scale;
+    const int4 met = boxes_met(n, &r, farthest < 1e6 ? (float)farthest * limit_slack : 1e6f);
+    for (int i = 0; i < 4; i++) {
+      if (!met[i] || n->centre[0][i] >= far_away) continue;
+      if (n->child[i] & LAVES__LEAF_BIT)
+        pass_leaf(bvh, n->child[i], &r, skip, hit);
+      else
+        stack[top++] = n->child[i];
+    }
+  }
+}

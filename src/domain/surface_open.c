@@ -149,7 +149,7 @@ double laves__open_cap_distance(const laves__surface *s, laves__vec3 p, double e
   if (2 * e_abs * rim >= distance) return INFINITY;
   /* Differences must not reach over a triangle, where the number jumps. */
   const laves__vec3 g = s->rim_tree.count <= LONG_RIM ? gradient_by_rim(s, p)
-                                                 : gradient_by_differences(s, p, difference_step * fmin(rim, distance));
+                                                      : gradient_by_differences(s, p, difference_step * fmin(rim, distance));
   const double slope = v3_norm(g);
   if (!(slope > 0)) return INFINITY;
   *uphill = v3_scale(g, 1 / slope);

@@ -59,7 +59,8 @@ static bool is_inside(const laves__surface *s, laves__vec3 p) {
 
 /* Whether a partial face bounds the solid at its point q. With the face left out the number is the mean of both sides, so
  * 1/2 says outside before and inside behind. The question is asked a little inwards, off the edges. */
-static bool bounds_at(const laves__surface *s, uint32_t slot, laves__vec3 q) {
+bool laves__surface_bounds_at(const laves__surface *s, uint32_t slot, laves__vec3 q) {
+  if (!(s->face_flags[slot] & LAVES__PARTIAL)) return true;
   const laves__triangle *t = &s->bvh.triangles[slot];
   const laves__vec3 middle = v3_scale(v3_add(t->a, v3_add(t->b, t->c)), 1.0 / 3);
   const double mean = laves__winding_number(&s->winding, v3_lerp(q, middle, inwards), winding_slot(s, slot), LAVES__NONE);
@@ -83,7 +84,7 @@ static laves__vec3 closest_on_segment(const laves__segment *g, laves__vec3 p) {
 static double closest_part(const laves__surface *s, uint32_t slot, laves__vec3 p, laves__vec3 *foot, int *on, uint32_t *other) {
   *foot = laves__triangle_closest(&s->bvh.triangles[slot], p, on);
   *other = LAVES__NONE;
-  if (!(s->face_flags[slot] & LAVES__PARTIAL) || bounds_at(s, slot, *foot)) return v3_norm2(v3_sub(p, *foot));
+  if (laves__surface_bounds_at(s, slot, *foot)) return v3_norm2(v3_sub(p, *foot));
   double least = INFINITY;
   for (uint32_t i = s->segment_starts[slot]; i < s->segment_starts[slot + 1]; i++) {
     const laves__segment *g = &s->segments[i];
@@ -222,6 +223,8 @@ void laves__surface_oracle(laves__surface *s, laves__oracle *oracle) {
   oracle->project = project;
   oracle->side = side;
   oracle->tag = s->tags ? tag : NULL;
+  oracle->sample = laves__surface_sample;
+  oracle->thin_places = laves__surface_thin_places;
   oracle->free = laves__surface_free;
 }
 
