@@ -25,8 +25,8 @@ static laves__vec3 random_point(uint64_t *state, laves__box3 b, double room) {
 static laves_domain *build(laves_context *context, const shape *s) {
   laves_domain *domain = NULL;
   laves_error error = {0};
-  const laves_result result = laves_domain_from_triangles(context, s->points, s->point_count, s->triangles, s->triangle_count,
-                                                          NULL, &domain, &error);
+  const laves_result result =
+      laves_domain_from_triangles(context, s->points, s->point_count, s->triangles, s->triangle_count, NULL, &domain, &error);
   if (result != LAVES_OK) fail_msg("%s", error.text);
   return domain;
 }
@@ -87,7 +87,7 @@ static void check_against_brute_force(const shape *s, int count) {
     o->evaluate(o->self, 1, &p, &phi, NULL);
     const double distance = brute_distance(s, q);
     assert_true(fabs(fabs(phi) - distance) <= 1e-8 * box3_diagonal(o->bounds));
-    if (distance > 1e-9) assert_int_equal(phi < 0, brute_winding(s, q) > 0.5);
+    if (distance > 1e-9) assert_int_equal(phi<0, brute_winding(s, q)> 0.5);
   }
   laves_domain_free(domain);
   assert_int_equal(laves_context_bytes(context), 0);
@@ -118,10 +118,8 @@ static void sign_at_edges_and_corners(void **unused) {
       {{-0.1, -0.2, -0.2}, 0.3}, /* convex corner */
       {{0.7, 0.6, 0.5}, -0.5},   /* inside, nearest to the concave edge, which equals cap and base here */
       {{1.1, 1.2, 0.5}, 0.1},    /* in the notch */
-      {{0.97, 0.96, 0.5}, -0.05},
-      {{0.97, 0.96, 1.3}, 0.3},  /* above the concave corner */
-      {{2.3, -0.4, 0.25}, 0.5},
-      {{1.5, 2.5, 0.5}, 0.70710678118654757},
+      {{0.97, 0.96, 0.5}, -0.05}, {{0.97, 0.96, 1.3}, 0.3}, /* above the concave corner */
+      {{2.3, -0.4, 0.25}, 0.5},   {{1.5, 2.5, 0.5}, 0.70710678118654757},
   };
   for (size_t i = 0; i < LAVES__COUNT_OF(cases); i++) {
     double phi;
