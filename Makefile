@@ -5,7 +5,7 @@
 #   make check      builds and runs all tests
 #   make bench      measures quality and speed, and draws README's table
 #   make install    installs program, library, header and package files under PREFIX (/usr/local)
-#   make format     lays out the C sources by .clang-format
+#   make format     lays out the C sources by .clang-format and lists them in src/README.md
 #   make clean      removes build/
 #   make help       prints this
 
@@ -38,6 +38,7 @@ install: all
 
 format:
 	@git ls-files '*.c' '*.h' ':!src/background/c15_table.c' | xargs clang-format -i
+	@tools/source_list.py --write
 
 clean:
 	@rm -rf $(BUILD)

@@ -60,7 +60,9 @@ def source_list():
         for stem in sorted({p.stem for p in files}):
             same = [p for p in files if p.stem == stem]  # .c comes before .h
             names = ", ".join([f"`{same[0].name}`"] + [f"`{p.suffix}`" for p in same[1:]])
-            out.append(f"| {names} | {first_sentence(same[0])} |\n")
+            sentences = [first_sentence(path) for path in same]
+            told = [sentence for sentence in sentences if not sentence.startswith("Generated")]
+            out.append(f"| {names} | {(told or sentences)[0]} |\n")
     return "".join(out) + "\n"
 
 
