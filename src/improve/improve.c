@@ -13,7 +13,7 @@
 #include "improve/relax.h"
 #include "improve/smooth.h"
 
-enum { SWEEPS = 2, SMOOTH_PASSES = 5, CONTRACT_PASSES = 12, THOROUGH_ROUNDS = 3 };
+enum { SWEEPS = 2, SMOOTH_PASSES = 5, CONTRACT_PASSES = 12, THOROUGH_ROUNDS = 3, TRIES_MAX = 6 };
 static const double block_side = 15;       /* sizes; see above */
 static const double worthwhile = 0.02;     /* share of bad tets that a pass must cure to be followed by its like */
 static const double thorough_below = 0.96; /* quality below which the few that remain get more patience */
@@ -43,6 +43,9 @@ typedef struct work {
   size_t count, capacity;
   size_t *block; /* first item of each block, and the end */
   size_t block_count, block_capacity;
+  double progress; /* share of the first bad tets that are cured, for the caller's eyes */
+  size_t first_count;
+  uint8_t *tries;   /* [tet_count] full treatments so far, at most TRIES_MAX */
   double *given_up; /* [tet_count] surroundings in which the last full treatment failed */
   double admit;     /* tets below this quality are worked on */
   int rounds;       /* of smoothing around a contraction; 0: smoothing only */
@@ -114,7 +117,8 @@ static void mend(work *w, int32_t t, laves__journal *journal) {
   for (int k = 0; k < 4 && is_bad(w, t); k++)
     if (laves__layer_moves(w->layer, w->layer->tet[t][k]))
       laves__smooth_vertex(w->frame, &w->measure, w->target, w->layer, w->layer->tet[t][k], NULL);
-  if (w->rounds == 0 || !is_bad(w, t)) return;
+  if (w->rounds == 0 || !is_bad(w, t) || w->tries[t] == TRIES_MAX) return;
+  w->tries[t]++;
   if (!laves__contract_tet(w->frame, &w->measure, w->target, w->layer, t, w->rounds, journal))
     w->given_up[t] = surroundings(w->layer, t);
 }
@@ -131,6 +135,7 @@ static void mend_blocks(void *user, size_t begin, size_t end, int worker) {
   for (size_t b = range->first_block + begin; b < range->first_block + end; b++)
     for (size_t i = w->block[b]; i < w->block[b + 1]; i++) {
       if (laves__is_cancelled(w->layer->context)) return;
+      if (worker == 0 && laves__cancelled(w->layer->context, "improve", w->progress)) return;
       if (is_bad(w, w->item[i].tet)) mend(w, w->item[i].tet, &w->journal[worker]);
     }
 }
@@ -139,12 +144,13 @@ static void mend_blocks(void *user, size_t begin, size_t end, int worker) {
 static laves_result run_pass(work *w, size_t *before, laves_error *error) {
   if (!admit_all(w)) return laves__fail_memory(w->layer->context, error);
   *before = w->count;
+  if (w->first_count == 0) w->first_count = w->count;
+  if (w->count) w->progress = fmax(w->progress, 1 - (double)w->count / (double)w->first_count);
   for (size_t first = 0; first < w->block_count;) {
     size_t end = first + 1;
     while (end < w->block_count && w->item[w->block[end]].colour == w->item[w->block[first]].colour) end++;
     colour_range range = {w, first};
-    if (!laves__parallel_for(w->layer->context, "improve", end - first, 1, mend_blocks, &range))
-      return laves__fail_cancelled(error);
+    if (!laves__parallel_for(w->layer->context, NULL, end - first, 1, mend_blocks, &range)) return laves__fail_cancelled(error);
     first = end;
   }
   return LAVES_OK;
@@ -177,13 +183,14 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   laves_result result = LAVES_OK;
   w.journal = laves__alloc_zeroed(context, (size_t)workers, sizeof *w.journal);
   w.given_up = laves__alloc(context, layer->tet_count, sizeof *w.given_up);
-  if (!w.journal || !w.given_up) {
+  w.tries = laves__alloc_zeroed(context, layer->tet_count, 1);
+  if (!w.journal || !w.given_up || !w.tries) {
     result = laves__fail_memory(context, error);
     goto cleanup;
   }
   for (size_t t = 0; t < layer->tet_count; t++) w.given_up[t] = HUGE_VAL;
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
-  if (!laves__parallel_for(context, "improve", layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
+  if (!laves__parallel_for(context, NULL, layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
   if (result == LAVES_OK) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
   if (result == LAVES_OK) result = run_passes(&w, SMOOTH_PASSES, 1, error);
   if (result == LAVES_OK) settle_all(&w);
@@ -191,11 +198,15 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   if (result == LAVES_OK) result = run_passes(&w, CONTRACT_PASSES, 2, error);
   w.rounds = THOROUGH_ROUNDS;
   w.admit = thorough_below;
-  for (size_t t = 0; t < layer->tet_count; t++) w.given_up[t] = HUGE_VAL;
+  for (size_t t = 0; t < layer->tet_count; t++) {
+    w.given_up[t] = HUGE_VAL;
+    w.tries[t] = 0;
+  }
   if (result == LAVES_OK) result = run_passes(&w, CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) settle_all(&w);
 cleanup:
   for (int i = 0; w.journal && i < workers; i++) laves__journal_free(&w.journal[i]);
+  laves__free(context, w.tries, layer->tet_count, 1);
   laves__free(context, w.given_up, layer->tet_count, sizeof *w.given_up);
   laves__free(context, w.journal, (size_t)workers, sizeof *w.journal);
   laves__free(context, w.item, w.capacity, sizeof *w.item);

@@ -105,11 +105,12 @@ laves_result laves__relax_surface(const laves__frame *frame, const laves__measur
     if (layer->quality[t] < worst) worst = layer->quality[t];
   bool done = true;
   for (int i = 0; done && i < sweeps; i++) {
-    done = laves__parallel_for(context, "improve", layer->vertex_count, 256, find_places, &s);
+    done =
+        !laves__cancelled(context, "improve", 0) && laves__parallel_for(context, NULL, layer->vertex_count, 256, find_places, &s);
     if (!done) break;
     for (size_t v = 0; v < layer->vertex_count; v++)
       if (s.other[v].moved) exchange(layer, &s.other[v], v);
-    done = laves__parallel_for(context, "improve", layer->tet_count, 256, measure_tets, &s);
+    done = laves__parallel_for(context, NULL, layer->tet_count, 256, measure_tets, &s);
     if (done) take_back(&s, worst);
   }
   laves__free(context, s.other, layer->vertex_count, sizeof *s.other);

@@ -24,7 +24,7 @@ enum {
   WORKING_MAX = 24,   /* functions that share the weight; four suffice in theory */
   EXCHANGES_MAX = 60, /* of weight, for one dual problem */
 };
-static const double active_range = 0.6;   /* functions this far above the least take part */
+static const double active_range = 0.5;   /* functions this far above the least take part */
 static const double first_tau = 0.05;     /* size^2; typical steps are a tenth of the size */
 static const double longest_step = 0.5;   /* sizes */
 static const double surface_reach = 0.75; /* sizes: how far a trial point may be from the surface */
@@ -95,6 +95,7 @@ static void fill_bundle(bundle *b, const laves__measure *m, const laves__layer *
   const laves__star *star = &layer->star[vertex];
   b->count = 0;
   for (int i = 0; i < star->count; i++) {
+    if (layer->quality[star->tet[i]] >= least + active_range) continue; /* none of its functions is below that */
     laves__vec3 p[4];
     laves__layer_points(layer, star->tet[i], p);
     add_tet(b, m, p, laves__layer_corner(layer, star->tet[i], vertex), least + active_range);
