@@ -1,4 +1,4 @@
-# The tables in the tree are what their generators make, and the list of sources is up to date.
+# The tables in the tree are what their generators make; the list of sources is up to date; links and keys of documents hold.
 find_package(Qhull CONFIG)
 if(Qhull_FOUND)
   add_executable(make_tiling ${PROJECT_SOURCE_DIR}/tools/make_tiling.c)
@@ -12,6 +12,8 @@ add_test(NAME tools/knot COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/tools/same_output $
          ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/make_knot.py)
 add_test(NAME tools/pow10_table COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/tools/same_output ${PROJECT_SOURCE_DIR}/src/io/pow10_table.c
          ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/make_pow10_table.py)
+add_test(NAME tools/source_list COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/source_list.py)
+add_test(NAME tools/check_docs COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/check_docs.py)
 get_property(tests DIRECTORY PROPERTY TESTS)
 foreach(test ${tests})
   if(test MATCHES "^tools/")
