@@ -1,9 +1,8 @@
 # Other programs read every format that laves writes and count and measure what they find, and laves reads what they write.
 # Skipped, loudly, where a program is missing.
 foreach(program write_formats count_mesh)
-  add_executable(${program} referee/${program}.c ${LAVES_FIXTURES})
-  target_include_directories(${program} PRIVATE ${PROJECT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
-  target_link_libraries(${program} PRIVATE laves PkgConfig::CMOCKA)
+  add_executable(${program} referee/${program}.c)
+  target_link_libraries(${program} PRIVATE laves-fixtures)
 endforeach()
 foreach(referee meshio gmsh tetgen)
   add_test(NAME referee/read_with_${referee}
