@@ -13,6 +13,9 @@
 /* Squares, cubes and products of coordinates must stay within the range of double with room. */
 static const double diagonal_min = 1e-60, diagonal_max = 1e60;
 
+/* The caps of an open surface are as smooth as its winding number is right. */
+static const double far_factor_of_caps = 3;
+
 /* Share of the box that an open surface must enclose to be taken for that of a solid. */
 static const double enclosed_min = 1e-3;
 
@@ -228,6 +231,7 @@ static bool solve_open(laves__surface *s, laves__crossings *c, laves_domain_info
   for (size_t f = 0; f < count; f++) kept += keep[f];
   if (kept > 0 && kept < count && (!leave_out(s, keep, c) || !renew_topology(s, info))) goto clean_up;
   mark_doubtful(s);
+  s->winding.far_factor = far_factor_of_caps;
   done = laves__surface_find_segments(s, c);
 clean_up:
   laves__free(s->context, keep, count, sizeof *keep);

@@ -94,22 +94,22 @@ void laves__bvh_shoot(const laves__bvh *bvh, laves__vec3 origin, laves__vec3 dir
 /* What the far field of a node needs: the vector area and its first moment about the centre. */
 typedef struct laves__moment {
   laves__vec3 centre, area_vector;
-  double far2;     /* squared distance from the centre beyond which the expansion is used */
   double first[6]; /* xx yy zz, and the sums xy yz zx of both orders */
-  double area, radius;
+  double area, radius, radius2;
 } laves__moment;
 
 typedef struct laves__winding {
   laves__bvh *bvh;
   laves__moment *moments; /* [moment_count], one for each node */
   size_t moment_count;
+  double far_factor; /* radii of a node beyond which its expansion serves; may be changed */
 } laves__winding;
 
 /* bvh stays the caller's and must outlive the result. */
 bool laves__winding_build(laves_context *context, laves__bvh *bvh, laves__winding *w);
 void laves__winding_free(laves_context *context, laves__winding *w);
 /* How often the surface winds round p, leaving out the triangles in slots skip_a and skip_b (LAVES__NONE: none). An
- * integer for closed surfaces, to about 1e-2. */
+ * integer for closed surfaces, but for the error of the expansions. */
 double laves__winding_number(const laves__winding *w, laves__vec3 p, uint32_t skip_a, uint32_t skip_b);
 
 /* ---- surface ---- */
@@ -174,7 +174,19 @@ bool laves__surface_normals(laves__surface *s);
 void laves__surface_measure(const laves__surface *s, double *volume, double *area);
 
 /* atan2(y, x) for any x, y to 2e-8, from arithmetic and square roots alone, so that it is the same on every platform. */
-double laves__angle(double y, double x);
+static inline double laves__angle(double y, double x) {
+  const double ax = fabs(x), ay = fabs(y);
+  const double large = ax > ay ? ax : ay, small = ax > ay ? ay : ax;
+  if (!(large > 0)) return 0;
+  /* Abramowitz and Stegun, "Handbook of mathematical functions", 1964, eq. 4.4.49. */
+  const double t = small / large, u = t * t;
+  const double p0 = 1 + u * (-0.3333314528 + u * (0.1999355085 + u * (-0.1420889944 + u * 0.1065626393)));
+  const double p1 = u * u * u * u * u * (-0.0752896400 + u * (0.0429096138 + u * (-0.0161657367 + u * 0.0028662257)));
+  double angle = t * (p0 + p1);
+  if (ay > ax) angle = 1.5707963267948966 - angle;
+  if (x < 0) angle = 3.141592653589793 - angle;
+  return y < 0 ? -angle : angle;
+}
 
 /* ---- crossings ---- */
 

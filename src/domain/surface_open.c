@@ -17,7 +17,7 @@
 
 static const double four_pi = 12.566370614359172;
 /* More than the error of the expansion of far nodes. */
-static const double winding_error = 0.02;
+static const double winding_error = 0.01;
 /* Steps of the central differences in parts of the distance to the rim; the number changes on that scale. */
 static const double difference_step = 0.05;
 /* A start this near to one half is on the cap already. */

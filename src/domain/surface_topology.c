@@ -232,20 +232,6 @@ clean_up:
 
 /* ---- normals and measures ---- */
 
-double laves__angle(double y, double x) {
-  const double ax = fabs(x), ay = fabs(y);
-  const double large = ax > ay ? ax : ay, small = ax > ay ? ay : ax;
-  if (!(large > 0)) return 0;
-  /* Abramowitz and Stegun, "Handbook of mathematical functions", 1964, eq. 4.4.49. */
-  const double t = small / large, u = t * t;
-  const double p0 = 1 + u * (-0.3333314528 + u * (0.1999355085 + u * (-0.1420889944 + u * 0.1065626393)));
-  const double p1 = u * u * u * u * u * (-0.0752896400 + u * (0.0429096138 + u * (-0.0161657367 + u * 0.0028662257)));
-  double angle = t * (p0 + p1);
-  if (ay > ax) angle = 1.5707963267948966 - angle;
-  if (x < 0) angle = 3.141592653589793 - angle;
-  return y < 0 ? -angle : angle;
-}
-
 bool laves__surface_normals(laves__surface *s) {
   if (!s->face_normals) s->face_normals = laves__alloc(s->context, s->face_capacity, sizeof *s->face_normals);
   if (!s->point_normals) s->point_normals = laves__alloc(s->context, s->point_capacity, sizeof *s->point_normals);

@@ -1,0 +1,130 @@
+/* Solids given by callbacks. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "domain/oracle.h"
+
+/* A ball round (3, 0, 0); `user` points to its radius. */
+static void ball(void *user, const double *points, size_t count, double *values) {
+  const double radius = *(const double *)user;
+  for (size_t i = 0; i < count; i++)
+    values[i] = sqrt((points[3 * i] - 3) * (points[3 * i] - 3) + points[3 * i + 1] * points[3 * i + 1] +
+                     points[3 * i + 2] * points[3 * i + 2]) -
+                radius;
+}
+
+/* The same ball, with values that are no distances and no slope to speak of far away. */
+static void steep_ball(void *user, const double *points, size_t count, double *values) {
+  ball(user, points, count, values);
+  for (size_t i = 0; i < count; i++) values[i] = values[i] > 0.5 ? NAN : tanh(20 * values[i]);
+}
+
+static laves_domain *build(laves_context *context, void (*evaluate)(void *, const double *, size_t, double *), double *radius,
+                           double lipschitz) {
+  const laves_function f = {evaluate, radius, {1.5, -1.5, -1.5}, {4.5, 1.5, 1.5}, lipschitz};
+  laves_domain *domain = NULL;
+  laves_error error = {0};
+  if (laves_domain_from_function(context, &f, &domain, &error)) fail_msg("%s", error.text);
+  return domain;
+}
+
+static void projects_onto_the_zero_set(void **unused) {
+  (void)unused;
+  laves_context *context = laves_context_create(NULL);
+  double radius = 1;
+  laves_domain *domains[2] = {build(context, ball, &radius, 1), build(context, steep_ball, &radius, 0)};
+  for (int k = 0; k < 2; k++) {
+    const laves__oracle *o = &domains[k]->oracle;
+    for (int i = 0; i < 200; i++) {
+      const double t = 0.7 * i, r = 0.8 + 0.002 * i, z = cos(0.3 * i);
+      const laves__vec3 u = v3(sqrt(1 - z * z) * cos(t), sqrt(1 - z * z) * sin(t), z);
+      laves__vec3 foot, normal;
+      uint32_t hint = LAVES__NO_HINT;
+      assert_true(o->project(o->self, v3_scale(u, r), 0.5, &hint, &foot, &normal));
+      assert_true(v3_distance(foot, u) < 1e-6);
+      assert_true(v3_distance(normal, u) < 1e-4);
+    }
+  }
+  laves_domain_free(domains[0]);
+  laves_domain_free(domains[1]);
+  laves_context_free(context);
+}
+
+static void reach_is_kept(void **unused) {
+  (void)unused;
+  laves_context *context = laves_context_create(NULL);
+  double radius = 1;
+  laves_domain *domain = build(context, ball, &radius, 1);
+  const laves__oracle *o = &domain->oracle;
+  laves__vec3 foot, normal;
+  uint32_t hint = LAVES__NO_HINT;
+  assert_false(o->project(o->self, v3(0.5, 0, 0), 0.4, &hint, &foot, &normal));
+  assert_true(o->project(o->self, v3(0.5, 0, 0), 0.6, &hint, &foot, &normal));
+  laves_domain_free(domain);
+  laves_context_free(context);
+}
+
+static void sides_follow_the_lipschitz_constant(void **unused) {
+  (void)unused;
+  laves_context *context = laves_context_create(NULL);
+  double radius = 1;
+  laves_domain *known = build(context, ball, &radius, 1), *unknown = build(context, ball, &radius, 0);
+  const laves__oracle *k = &known->oracle, *u = &unknown->oracle;
+  const laves__vec3 half = {0.2, 0.2, 0.2};
+  assert_int_equal(k->side(k->self, v3(0, 0, 0), 0.4, half), LAVES__INSIDE);
+  assert_int_equal(k->side(k->self, v3(1.3, 0, 0), 0.4, half), LAVES__UNDECIDED);
+  assert_int_equal(k->side(k->self, v3(1.4, 0, 0), 0.35, half), LAVES__OUTSIDE);
+  assert_int_equal(u->side(u->self, v3(0, 0, 0), 0.4, half), LAVES__UNDECIDED);
+  assert_int_equal(u->side(u->self, v3(2, 0, 0), 0.4, half), LAVES__OUTSIDE); /* beyond the box */
+  laves_domain_free(known);
+  laves_domain_free(unknown);
+  laves_context_free(context);
+}
+
+static void what_is_no_number_is_outside(void **unused) {
+  (void)unused;
+  laves_context *context = laves_context_create(NULL);
+  double radius = 0.5;
+  laves_domain *domain = build(context, steep_ball, &radius, 0);
+  const double points[6] = {3, 0, 0, 4.4, 0, 0};
+  double values[2];
+  laves_domain_evaluate(domain, points, 2, values);
+  assert_true(values[0] < 0 && values[1] > 0);
+  assert_int_equal(domain->info.kind, LAVES_DOMAIN_FUNCTION);
+  assert_true(isnan(domain->info.volume));
+  laves_domain_free(domain);
+  assert_int_equal(laves_context_bytes(context), 0);
+  laves_context_free(context);
+}
+
+static void bad_descriptions_are_refused(void **unused) {
+  (void)unused;
+  laves_context *context = laves_context_create(NULL);
+  double radius = 1;
+  laves_domain *domain;
+  laves_error error;
+  const laves_function none = {NULL, NULL, {0, 0, 0}, {1, 1, 1}, 1}, flat = {ball, &radius, {0, 0, 0}, {1, 0, 1}, 1},
+                       negative = {ball, &radius, {0, 0, 0}, {1, 1, 1}, -1};
+  assert_int_equal(laves_domain_from_function(context, &none, &domain, &error), LAVES_ERROR_OPTION);
+  assert_int_equal(laves_domain_from_function(context, &flat, &domain, &error), LAVES_ERROR_OPTION);
+  assert_non_null(strstr(error.text, "box"));
+  assert_int_equal(laves_domain_from_function(context, &negative, &domain, &error), LAVES_ERROR_OPTION);
+  assert_non_null(strstr(error.text, "Lipschitz"));
+  assert_null(domain);
+  assert_int_equal(laves_context_bytes(context), 0);
+  laves_context_free(context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(projects_onto_the_zero_set),          cmocka_unit_test(reach_is_kept),
+      cmocka_unit_test(sides_follow_the_lipschitz_constant), cmocka_unit_test(what_is_no_number_is_outside),
+      cmocka_unit_test(bad_descriptions_are_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
