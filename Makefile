@@ -31,7 +31,8 @@ check:
 	@ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
 
 bench: all
-	@bench/run $(BUILD)/laves
+	@cmake --build $(BUILD) --parallel $(JOBS) --target laves-measure
+	@bench/run $(BUILD)/laves --readme
 
 install: all
 	@cmake --install $(BUILD) --prefix $(PREFIX)

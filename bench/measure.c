@@ -1,0 +1,266 @@
+/* Meshes one solid and prints what the benchmark needs to know about it as one line of JSON.
+ *
+ *   measure INPUT TETS [--threads N] [--repeat N] [--judge] [--distance] [--write FILE]
+ *
+ * INPUT: a surface, a script, or else an expression; TETS: how many are wished. CPU seconds are those of the whole process,
+ * apart for reading, meshing and writing (an uncompressed VTU); with --repeat all three are lists, one number a run.
+ * --judge adds angles, validity and every tet outside the window of angles and volume-length with the radius of curvature
+ * there; --distance adds the distances both ways and the places that are further than 0.3 sizes from the surface. */
+#include <laves/laves.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { RUNS_MAX = 100, PLACES_MAX = 1000000 };
+
+/* The window of issue and study, and from where on a distance is told. */
+static const double min_dihedral = 40, max_dihedral = 125, volume_length = 0.6, distance_in_sizes = 0.3;
+
+typedef struct request {
+  const char *input, *output;
+  long long tets;
+  int threads, repeat;
+  bool judge, distance;
+} request;
+
+/* Seconds of each run. */
+typedef struct times {
+  double read[RUNS_MAX], mesh[RUNS_MAX], mesh_wall[RUNS_MAX], write[RUNS_MAX];
+} times;
+
+typedef struct run {
+  laves_context *context;
+  laves_domain *domain;
+  laves_mesh *mesh;
+  laves_report report;
+  laves_error error;
+} run;
+
+static double cpu_seconds(void) {
+  struct rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return (double)usage.ru_utime.tv_sec + (double)usage.ru_stime.tv_sec +
+         1e-6 * ((double)usage.ru_utime.tv_usec + (double)usage.ru_stime.tv_usec);
+}
+
+static double wall_seconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* ---- output ---- */
+
+static void print_text(const char *text) {
+  putchar('"');
+  for (; *text; text++) {
+    if (*text == '"' || *text == '\\') putchar('\\');
+    putchar((unsigned char)*text < ' ' ? ' ' : *text);
+  }
+  putchar('"');
+}
+
+/* JSON has no word for what is not finite. */
+static void print_number(double value) {
+  if (isfinite(value))
+    printf("%.9g", value);
+  else
+    printf("null");
+}
+
+static void print_field(const char *name, double value) {
+  printf(", \"%s\": ", name);
+  print_number(value);
+}
+
+static void print_list(const char *name, const double *values, int count) {
+  printf(", \"%s\": [", name);
+  for (int i = 0; i < count; i++) {
+    if (i) printf(", ");
+    print_number(values[i]);
+  }
+  printf("]");
+}
+
+/* Each place as [x, y, z, value, radius of curvature]; null for a radius means flat. */
+static void print_places(const char *name, const laves_place *places, size_t count) {
+  printf(", \"%s\": [", name);
+  for (size_t i = 0; i < count; i++) {
+    const laves_place *p = &places[i];
+    const double values[5] = {p->place[0], p->place[1], p->place[2], p->value, p->curvature_radius};
+    printf(i ? ", [" : "[");
+    for (int k = 0; k < 5; k++) {
+      if (k) printf(", ");
+      print_number(values[k]);
+    }
+    printf("]");
+  }
+  printf("]");
+}
+
+/* ---- judging ---- */
+
+static laves_result judge_shapes(run *r, laves_place *places) {
+  size_t count = 0;
+  laves_check check;
+  laves_result result = laves_check_mesh(r->context, r->mesh, NULL, &check, &r->error);
+  if (result == LAVES_OK)
+    result = laves_check_window(r->context, r->mesh, r->domain, min_dihedral, max_dihedral, volume_length, places, PLACES_MAX,
+                                &count, &r->error);
+  if (result != LAVES_OK) return result;
+  printf(", \"valid\": %s", check.valid ? "true" : "false");
+  print_field("min_dihedral", check.min_dihedral.min);
+  print_field("max_dihedral", check.max_dihedral.max);
+  print_field("volume_length", check.volume_length.min);
+  print_field("radius_ratio_mean", check.radius_ratio.mean);
+  print_field("outside", (double)count);
+  print_places("outside_places", places, count < PLACES_MAX ? count : PLACES_MAX);
+  return LAVES_OK;
+}
+
+static laves_result judge_distance(run *r, laves_place *places) {
+  size_t count = 0;
+  laves_check check;
+  laves_result result = laves_check_mesh(r->context, r->mesh, r->domain, &check, &r->error);
+  if (result == LAVES_OK)
+    result = laves_check_distance(r->context, r->mesh, r->domain, distance_in_sizes * r->report.size, places, PLACES_MAX, &count,
+                                  &r->error);
+  if (result != LAVES_OK) return result;
+  print_field("to_surface_mean", check.to_surface_mean);
+  print_field("to_surface_max", check.to_surface_max);
+  print_field("from_surface_mean", check.from_surface_mean);
+  print_field("from_surface_max", check.from_surface_max);
+  print_field("distant", (double)count);
+  print_places("distant_places", places, count < PLACES_MAX ? count : PLACES_MAX);
+  return LAVES_OK;
+}
+
+static laves_result judge(const request *q, run *r) {
+  laves_result result = LAVES_OK;
+  laves_place *places = malloc(PLACES_MAX * sizeof *places);
+  if (!places) return LAVES_ERROR_MEMORY;
+  if (q->judge) result = judge_shapes(r, places);
+  if (q->distance && result == LAVES_OK) result = judge_distance(r, places);
+  free(places);
+  return result;
+}
+
+static void describe(const request *q, const run *r, const times *t) {
+  laves_domain_info info;
+  char hash[33];
+  double diagonal = 0;
+  laves_domain_get_info(r->domain, &info);
+  for (int i = 0; i < 3; i++) diagonal += (info.upper[i] - info.lower[i]) * (info.upper[i] - info.lower[i]);
+  laves_mesh_hash(r->mesh, hash);
+  printf("{\"input\": ");
+  print_text(q->input);
+  printf(", \"hash\": \"%s\"", hash);
+  print_field("tets", (double)laves_mesh_tet_count(r->mesh));
+  print_field("size", r->report.size);
+  print_field("diagonal", sqrt(diagonal));
+  print_field("peak_bytes", (double)laves_context_peak_bytes(r->context));
+  print_list("read_cpu", t->read, q->repeat);
+  print_list("mesh_cpu", t->mesh, q->repeat);
+  print_list("mesh_wall", t->mesh_wall, q->repeat);
+  print_list("write_cpu", t->write, q->repeat);
+  printf(", \"stages_cpu\": {");
+  for (int i = 0; i < r->report.stage_count; i++) {
+    printf("%s\"%s\": ", i ? ", " : "", r->report.stages[i].name);
+    print_number(r->report.stages[i].cpu_seconds);
+  }
+  printf("}");
+}
+
+/* ---- meshing ---- */
+
+static laves_result read_input(run *r, const char *input) {
+  if (access(input, F_OK) == 0) return laves_domain_from_file(r->context, input, &r->domain, &r->error);
+  return laves_domain_from_expression(r->context, input, &r->domain, &r->error);
+}
+
+static laves_result mesh_once(const request *q, run *r, times *t, int turn) {
+  laves_options options = laves_options_default();
+  laves_write_options files = laves_write_options_default();
+  options.tet_target = q->tets;
+  files.compression = 0;
+  const double start = cpu_seconds();
+  laves_result result = read_input(r, q->input);
+  if (result != LAVES_OK) return result;
+  const double have_domain = cpu_seconds(), wall = wall_seconds();
+  result = laves_generate(r->context, r->domain, &options, &r->mesh, &r->report, &r->error);
+  if (result != LAVES_OK && result != LAVES_TARGET_MISSED) return result;
+  const double have_mesh = cpu_seconds();
+  t->read[turn] = have_domain - start;
+  t->mesh[turn] = have_mesh - have_domain;
+  t->mesh_wall[turn] = wall_seconds() - wall;
+  t->write[turn] = 0;
+  if (!q->output) return LAVES_OK;
+  result = laves_mesh_write(r->context, r->mesh, q->output, &files, &r->error);
+  t->write[turn] = cpu_seconds() - have_mesh;
+  return result;
+}
+
+static void drop(run *r) {
+  laves_mesh_free(r->mesh);
+  laves_domain_free(r->domain);
+  r->mesh = NULL;
+  r->domain = NULL;
+}
+
+static laves_result work(const request *q, run *r) {
+  times t;
+  laves_result result = LAVES_OK;
+  for (int i = 0; i < q->repeat && result == LAVES_OK; i++) {
+    drop(r);
+    result = mesh_once(q, r, &t, i);
+  }
+  if (result != LAVES_OK) return result;
+  describe(q, r, &t);
+  result = judge(q, r);
+  printf("}\n");
+  return result;
+}
+
+static bool parse(int count, char **words, request *q) {
+  *q = (request){.repeat = 1};
+  if (count < 3) return false;
+  q->input = words[1];
+  q->tets = atoll(words[2]);
+  for (int i = 3; i < count; i++) {
+    const bool more = i + 1 < count;
+    if (strcmp(words[i], "--judge") == 0)
+      q->judge = true;
+    else if (strcmp(words[i], "--distance") == 0)
+      q->distance = true;
+    else if (strcmp(words[i], "--threads") == 0 && more)
+      q->threads = atoi(words[++i]);
+    else if (strcmp(words[i], "--repeat") == 0 && more)
+      q->repeat = atoi(words[++i]);
+    else if (strcmp(words[i], "--write") == 0 && more)
+      q->output = words[++i];
+    else
+      return false;
+  }
+  return q->tets > 0 && q->repeat >= 1 && q->repeat <= RUNS_MAX;
+}
+
+int main(int count, char **words) {
+  request q;
+  run r = {0};
+  if (!parse(count, words, &q)) {
+    fprintf(stderr, "measure INPUT TETS [--threads N] [--repeat N] [--judge] [--distance] [--write FILE]\n");
+    return 1;
+  }
+  laves_context_options options = laves_context_options_default();
+  options.thread_count = q.threads;
+  r.context = laves_context_create(&options);
+  laves_result result = r.context ? work(&q, &r) : LAVES_ERROR_MEMORY;
+  if (result != LAVES_OK) fprintf(stderr, "measure: %s: %s\n", q.input, r.error.text);
+  drop(&r);
+  laves_context_free(r.context);
+  return laves_result_exit_code(result);
+}

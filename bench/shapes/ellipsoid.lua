@@ -1,0 +1,1 @@
+return ellipsoid(3, 1, 1)

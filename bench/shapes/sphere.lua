@@ -1,0 +1,1 @@
+return sphere(1)

@@ -1,0 +1,1 @@
+return torus(0.85, 0.15)

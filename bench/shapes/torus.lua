@@ -1,0 +1,1 @@
+return torus(0.7, 0.3)
