@@ -129,7 +129,10 @@ static void mark_partial(laves__surface *s, const laves__crossings *c) {
 
 static void mark_doubtful(laves__surface *s) {
   for (size_t f = 0; f < s->face_count; f++)
-    for (int i = 0; i < 3 && (s->face_flags[f] & LAVES__PARTIAL); i++) s->doubtful_points[s->faces[f][i]] = true;
+    for (int i = 0; i < 3; i++) {
+      const bool doubtful = s->open ? !(s->face_flags[f] & LAVES__PLAIN) : (s->face_flags[f] & LAVES__PARTIAL) != 0;
+      if (doubtful) s->doubtful_points[s->faces[f][i]] = true;
+    }
 }
 
 /* Leaves the faces without keep out of the distance; the whole stays behind the winding number. */

@@ -42,6 +42,11 @@ typedef struct laves__bvh_node {
   uint32_t child[4];
 } laves__bvh_node;
 
+/* The slots of a leaf, first and last, and whether place i of a node holds anything. */
+static inline uint32_t laves__leaf_first(uint32_t child) { return child & 0x0fffffffu; }
+static inline uint32_t laves__leaf_last(uint32_t child) { return (child & 0x0fffffffu) + (child >> 28 & 7); }
+static inline bool laves__bvh_is_used(const laves__bvh_node *n, int i) { return n->centre[0][i] < 1e16f; }
+
 typedef struct laves__bvh {
   laves__bvh_node *nodes;
   size_t node_count, node_capacity;
@@ -114,8 +119,9 @@ double laves__winding_number(const laves__winding *w, laves__vec3 p, uint32_t sk
 
 /* ---- surface ---- */
 
-/* Of a face: it meets others, so that a part of it may lie inside the solid. */
-enum { LAVES__PARTIAL = 1 };
+/* Of a face: it meets others, so that a part of it may lie inside the solid; of one of an open surface: it bounds the solid
+ * all over and by a wide margin, so that near it the normal tells the sign. */
+enum { LAVES__PARTIAL = 1, LAVES__PLAIN = 2 };
 
 /* Where a partial face meets another. */
 typedef struct laves__segment {
@@ -151,8 +157,8 @@ typedef struct laves__surface {
   /* Open surfaces: */
   bool open;
   size_t all_face_count; /* with those left out */
-  double rim_length;
-  laves__bvh rim_tree; /* over the rim of the whole, before walls were left out */
+  double *rim_lengths;   /* of the rim below each node of rim_tree */
+  laves__bvh rim_tree;   /* over the rim of the whole, before walls were left out */
 } laves__surface;
 
 /* ---- weld ---- */
@@ -222,13 +228,16 @@ bool laves__surface_build_rim(laves__surface *s);
 double laves__surface_inside_share(const laves__surface *s, laves__box3 box);
 /* Winding number less one half. */
 double laves__open_excess(const laves__surface *s, laves__vec3 p);
-/* Estimated distance to the cap of a hole when that is less than `distance`, that to the triangles; else INFINITY. uphill
- * receives the direction in which the excess e at p grows. */
-double laves__open_cap_distance(const laves__surface *s, laves__vec3 p, double e, double distance, laves__vec3 *uphill);
+/* Whether the rim is so far from p that a plain face at `distance` is all that matters. */
+bool laves__open_rim_is_far(const laves__surface *s, laves__vec3 p, double distance);
+/* Rough distance to the caps of holes where that is less than `distance`, that to the triangles; else INFINITY. */
+double laves__open_cap_distance(const laves__surface *s, laves__vec3 p, double e, double distance);
+/* The same, better; uphill receives the direction in which the excess e at p grows. */
+double laves__open_cap_guess(const laves__surface *s, laves__vec3 p, double e, double distance, laves__vec3 *uphill);
 /* The cap's point along the steepest direction, within reach; guess: its estimated distance. */
 bool laves__open_project(const laves__surface *s, laves__vec3 p, double e, double guess, laves__vec3 uphill, double reach,
                          laves__vec3 *foot, laves__vec3 *normal);
-/* Whether no cap passes through the ball, given that no triangle does. */
+/* Whether neither triangles nor caps pass through the ball. */
 bool laves__open_ball_is_certain(const laves__surface *s, laves__vec3 p, double e, double radius);
 
 /* ---- samples ---- */

@@ -378,7 +378,7 @@ void laves__bvh_nearest(const laves__bvh *bvh, laves__vec3 point, laves__nearest
       top = push_children(&bvh->nodes[next.child], p, limit, stack, top);
       continue;
     }
-    const uint32_t first = next.child & 0x0fffffffu, last = first + (next.child >> 28 & 7);
+    const uint32_t first = laves__leaf_first(next.child), last = laves__leaf_last(next.child);
     for (uint32_t slot = first; slot <= last; slot++) {
       const double d2 = laves__triangle_distance2(&bvh->triangles[slot], point);
       if (d2 > best->distance2 || (d2 == best->distance2 && slot >= best->slot)) continue;
@@ -401,7 +401,7 @@ void laves__bvh_nearest_part(const laves__bvh *bvh, laves__vec3 point, laves__me
       top = push_children(&bvh->nodes[next.child], p, limit, stack, top);
       continue;
     }
-    const uint32_t first = next.child & 0x0fffffffu, last = first + (next.child >> 28 & 7);
+    const uint32_t first = laves__leaf_first(next.child), last = laves__leaf_last(next.child);
     for (uint32_t slot = first; slot <= last; slot++) {
       const double whole = laves__triangle_distance2(&bvh->triangles[slot], point);
       if (whole > best->distance2) continue;
@@ -436,7 +436,7 @@ void laves__bvh_overlaps(const laves__bvh *bvh, laves__box3 region, laves__slot_
         stack[top++] = child;
         continue;
       }
-      const uint32_t first = child & 0x0fffffffu, last = first + (child >> 28 & 7);
+      const uint32_t first = laves__leaf_first(child), last = laves__leaf_last(child);
       for (uint32_t slot = first; slot <= last; slot++) fn(user, slot);
     }
   }
@@ -490,7 +490,7 @@ static double pass(const laves__triangle *t, const ray *r) {
 }
 
 static void pass_leaf(const laves__bvh *bvh, uint32_t child, const ray *r, uint32_t skip, laves__hit *hit) {
-  const uint32_t first = child & 0x0fffffffu, last = first + (child >> 28 & 7);
+  const uint32_t first = laves__leaf_first(child), last = laves__leaf_last(child);
   for (uint32_t slot = first; slot <= last; slot++) {
     const double distance = slot == skip ? INFINITY : pass(&bvh->triangles[slot], r);
     if (distance < hit->distance || (distance == hit->distance && slot < hit->slot && isfinite(distance)))
@@ -512,7 +512,7 @@ void laves__bvh_shoot(const laves__bvh *bvh, laves__vec3 origin, laves__vec3 dir
     const double farthest = hit->distance * bvh->scale;
     const int4 met = boxes_met(n, &r, farthest < 1e6 ? (float)farthest * limit_slack : 1e6f);
     for (int i = 0; i < 4; i++) {
-      if (!met[i] || n->centre[0][i] >= far_away) continue;
+      if (!met[i] || !laves__bvh_is_used(n, i)) continue;
       if (n->child[i] & LAVES__LEAF_BIT)
         pass_leaf(bvh, n->child[i], &r, skip, hit);
       else

@@ -7,10 +7,11 @@
  * solid; elsewhere it is a wall inside or a sheet outside. Away from triangles the number is smooth; there {w = 1/2} closes the
  * holes. Its gradient is a line integral over the rim alone (the law of Biot and Savart), so
  *
- *   |grad w| <= L / (4 pi rho^2)   at distance rho from a rim of length L,
+ *   |grad w| <= sum of L_i / (4 pi rho_i^2)   over pieces of length L_i at distances rho_i,
  *
  * which tells how far a ball without triangles is certain to stay on its side. How far the cap of a hole is, is
- * estimated as |w - 1/2| / |grad w|, and only where the rim is near enough to matter. */
+ * estimated as |w - 1/2| / |grad w|. Beside a straight rim |grad w| is 1 / (2 pi rho): near a face across which the number
+ * passes 1/2 by a wide margin, and four times as far from the rim, there is no cap, and the normal tells the sign. */
 #include <string.h>
 
 #include "domain/surface.h"
@@ -20,6 +21,12 @@ static const double four_pi = 12.566370614359172;
 static const double winding_error = 0.01;
 /* Steps of the central differences in parts of the distance to the rim; the number changes on that scale. */
 static const double difference_step = 0.05;
+/* How far from 1/2 the mean of both sides of a face may be for it to count as plain; 1/2 would be its limit. */
+static const double plain_margin = 0.3;
+/* How much further than the face the rim must be for it not to matter. */
+static const double rim_room = 4;
+/* A node of the rim's tree is taken as a whole from this many of its widths on. */
+static const double whole_node = 1;
 /* A start this near to one half is on the cap already. */
 static const double on_cap = 1e-9;
 
@@ -27,17 +34,18 @@ enum { SAMPLES = 32, BISECTIONS = 50, EXPANSIONS = 6, LONG_RIM = 1024 };
 
 /* ---- building ---- */
 
-/* Counts at how many of four places of a face, its middle and near its corners, the face bounds the solid. */
-static int places_that_bound(const laves__surface *s, uint32_t f) {
+/* Winding numbers at four places of a face, its middle and near its corners: the least and the greatest distance from 1/2. */
+static void judge_face(const laves__surface *s, uint32_t f, double *least, double *most) {
   const laves__triangle *t = &s->bvh.triangles[f];
   const laves__vec3 middle = v3_scale(v3_add(t->a, v3_add(t->b, t->c)), 1.0 / 3);
   const laves__vec3 places[4] = {middle, v3_lerp(t->a, middle, 0.1), v3_lerp(t->b, middle, 0.1), v3_lerp(t->c, middle, 0.1)};
-  int count = 0;
+  *least = INFINITY;
+  *most = 0;
   for (int k = 0; k < 4; k++) {
-    const double mean = laves__winding_number(&s->winding, places[k], f, LAVES__NONE);
-    count += mean > 0 && mean < 1;
+    const double off = fabs(laves__winding_number(&s->winding, places[k], f, LAVES__NONE) - 0.5);
+    *least = fmin(*least, off);
+    *most = fmax(*most, off);
   }
-  return count;
 }
 
 typedef struct judgement {
@@ -49,9 +57,12 @@ static void judge_faces(void *user, size_t begin, size_t end, int worker) {
   judgement *j = user;
   (void)worker;
   for (size_t f = begin; f < end; f++) {
-    const int count = places_that_bound(j->s, (uint32_t)f);
-    j->keep[f] = count > 0 || (j->s->face_flags[f] & LAVES__PARTIAL);
-    if (count < 4) j->s->face_flags[f] |= LAVES__PARTIAL;
+    double least, most;
+    judge_face(j->s, (uint32_t)f, &least, &most);
+    uint8_t *flags = &j->s->face_flags[f];
+    j->keep[f] = least < 0.5 || (*flags & LAVES__PARTIAL);
+    if (most >= 0.5) *flags |= LAVES__PARTIAL;
+    if (!(*flags & LAVES__PARTIAL) && most < plain_margin) *flags |= LAVES__PLAIN;
   }
 }
 
@@ -60,20 +71,39 @@ bool laves__surface_judge_open(laves__surface *s, bool *keep) {
   return laves__parallel_for(s->context, "surface", s->face_count, 64, judge_faces, &j);
 }
 
+static double leaf_length(const laves__bvh *tree, uint32_t child) {
+  double sum = 0;
+  for (uint32_t slot = laves__leaf_first(child); slot <= laves__leaf_last(child); slot++)
+    sum += v3_distance(tree->triangles[slot].a, tree->triangles[slot].b);
+  return sum;
+}
+
+/* Nodes come before their children, so the sums are made from the last node on. */
+static bool sum_lengths(laves__surface *s) {
+  const laves__bvh *tree = &s->rim_tree;
+  s->rim_lengths = laves__alloc_zeroed(s->context, tree->node_capacity, sizeof *s->rim_lengths);
+  if (!s->rim_lengths) return false;
+  for (size_t k = tree->node_count; k-- > 0;)
+    for (int i = 0; i < 4; i++) {
+      const uint32_t child = tree->nodes[k].child[i];
+      if (!laves__bvh_is_used(&tree->nodes[k], i)) continue;
+      s->rim_lengths[k] += child & LAVES__LEAF_BIT ? leaf_length(tree, child) : s->rim_lengths[child];
+    }
+  return true;
+}
+
 bool laves__surface_build_rim(laves__surface *s) {
   bool done = false;
   const size_t count = s->rim_count;
   uint32_t(*edges)[3] = laves__alloc(s->context, count, sizeof *edges);
   uint32_t *order = laves__alloc(s->context, count, sizeof *order);
   if (edges && order) {
-    s->rim_length = 0;
     for (size_t i = 0; i < count; i++) {
       const uint32_t half = s->rim[i];
       edges[i][0] = s->faces[half / 3][half % 3];
       edges[i][1] = edges[i][2] = s->faces[half / 3][(half % 3 + 1) % 3];
-      s->rim_length += v3_distance(s->points[edges[i][0]], s->points[edges[i][1]]);
     }
-    done = laves__bvh_build(s->context, s->points, (const uint32_t(*)[3])edges, count, order, &s->rim_tree);
+    done = laves__bvh_build(s->context, s->points, (const uint32_t(*)[3])edges, count, order, &s->rim_tree) && sum_lengths(s);
   }
   laves__free(s->context, edges, count, sizeof *edges);
   laves__free(s->context, order, count, sizeof *order);
@@ -140,12 +170,20 @@ static laves__vec3 gradient_by_differences(const laves__surface *s, laves__vec3 
             h * (excess(s, v3(p.x, p.y, p.z + step)) - excess(s, v3(p.x, p.y, p.z - step))));
 }
 
-double laves__open_cap_distance(const laves__surface *s, laves__vec3 p, double e, double distance, laves__vec3 *uphill) {
+bool laves__open_rim_is_far(const laves__surface *s, laves__vec3 p, double distance) {
+  return rim_distance(s, p, rim_room * distance) >= rim_room * distance;
+}
+
+double laves__open_cap_distance(const laves__surface *s, laves__vec3 p, double e, double distance) {
+  /* Right on the axis of a round hole, and at most three times too small beside a rim, where triangles are near. */
+  const double per_rim = 2 * fabs(e);
+  return per_rim < 1 ? per_rim * rim_distance(s, p, distance / fmax(per_rim, 1e-3)) : INFINITY;
+}
+
+double laves__open_cap_guess(const laves__surface *s, laves__vec3 p, double e, double distance, laves__vec3 *uphill) {
   const double e_abs = fabs(e);
-  if (s->rim_tree.count == 0 || !(e_abs < 0.5)) return INFINITY;
-  /* Beside a straight rim the number grows with the angle, so the cap is at most 2 pi e rho away, and nearer nowhere by much. */
-  const double enough = distance / (e_abs > 1e-3 ? e_abs : 1e-3);
-  const double rim = rim_distance(s, p, enough);
+  if (!(e_abs < 0.5)) return INFINITY;
+  const double rim = rim_distance(s, p, distance / fmax(2 * e_abs, 1e-3));
   if (2 * e_abs * rim >= distance) return INFINITY;
   /* Differences must not reach over a triangle, where the number jumps. */
   const laves__vec3 g = s->rim_tree.count <= LONG_RIM ? gradient_by_rim(s, p)
@@ -182,9 +220,40 @@ bool laves__open_project(const laves__surface *s, laves__vec3 p, double e, doubl
   return 0.5 * (low + high) <= reach;
 }
 
+/* The greatest |grad w| in the ball, bounded by the sum over the rim; INFINITY when the rim touches it. */
+static double steepest(const laves__surface *s, laves__vec3 p, double radius) {
+  const laves__bvh *tree = &s->rim_tree;
+  const double scale = tree->scale;
+  uint32_t stack[LAVES__BVH_STACK];
+  int top = 0;
+  double sum = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    const laves__bvh_node *n = &tree->nodes[stack[--top]];
+    for (int i = 0; i < 4; i++) {
+      if (!laves__bvh_is_used(n, i)) continue;
+      const uint32_t child = n->child[i];
+      const laves__vec3 half = v3((double)n->half[0][i], (double)n->half[1][i], (double)n->half[2][i]);
+      const laves__vec3 centre = v3((double)n->centre[0][i], (double)n->centre[1][i], (double)n->centre[2][i]);
+      const laves__vec3 off =
+          v3(fabs(p.x * scale - centre.x) - half.x, fabs(p.y * scale - centre.y) - half.y, fabs(p.z * scale - centre.z) - half.z);
+      const double gap = v3_norm(v3_max(off, v3(0, 0, 0))) / scale - radius;
+      const double length = child & LAVES__LEAF_BIT ? leaf_length(tree, child) : s->rim_lengths[child];
+      if ((child & LAVES__LEAF_BIT) || gap * scale > whole_node * v3_norm(half)) {
+        if (!(gap > 0)) return INFINITY;
+        sum += length / (gap * gap);
+      } else {
+        stack[top++] = child;
+      }
+    }
+  }
+  return sum / four_pi;
+}
+
 bool laves__open_ball_is_certain(const laves__surface *s, laves__vec3 p, double e, double radius) {
-  if (s->rim_tree.count == 0) return fabs(e) > winding_error;
-  const double rho = rim_distance(s, p, 1e3 * s->diagonal) - radius;
-  if (!(rho > 0)) return false;
-  return fabs(e) > radius * s->rim_length / (four_pi * rho * rho) + winding_error;
+  if (!(fabs(e) > winding_error)) return false;
+  laves__nearest n = {radius * radius * (1 + 1e-9), LAVES__NONE};
+  laves__bvh_nearest(s->winding.bvh, p, &n);
+  if (n.slot != LAVES__NONE) return false;
+  return fabs(e) > radius * steepest(s, p, radius) + winding_error;
 }

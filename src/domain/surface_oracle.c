@@ -123,20 +123,32 @@ static double signed_distance_by_winding(const laves__surface *s, laves__vec3 p,
 
 /* ---- open surfaces ---- */
 
-static double open_distance(const laves__surface *s, laves__vec3 p, double e, const laves__nearest *n) {
-  const laves__nearest part = (s->face_flags[n->slot] & LAVES__PARTIAL) ? nearest_part(s, p, INFINITY) : *n;
-  const double distance = sqrt(part.slot == LAVES__NONE ? n->distance2 : part.distance2);
-  laves__vec3 uphill;
-  return fmin(distance, laves__open_cap_distance(s, p, e, distance, &uphill));
+/* Whether the nearest point lies amid plain faces, far from the rim: then the surface is as good as a closed one here. */
+static bool is_plain(const laves__surface *s, laves__vec3 p, const laves__nearest *n, int on) {
+  if (!(s->face_flags[n->slot] & LAVES__PLAIN)) return false;
+  if (on >= LAVES__ON_CORNER && s->doubtful_points[s->faces[n->slot][on - LAVES__ON_CORNER]]) return false;
+  if (on >= LAVES__ON_EDGE && on < LAVES__ON_CORNER) {
+    const uint32_t half = s->across[3 * (size_t)n->slot + (size_t)(on - LAVES__ON_EDGE)];
+    if (half == LAVES__NONE || !(s->face_flags[half / 3] & LAVES__PLAIN)) return false;
+  }
+  return laves__open_rim_is_far(s, p, sqrt(n->distance2));
 }
 
-/* The nearer of the triangles and the caps. */
+/* Away from plain faces: the sign of w - 1/2, and the lesser of the distances to triangles (whole ones: hidden parts only make it
+ * smaller) and caps. */
+static double open_value(const laves__surface *s, laves__vec3 p, const laves__nearest *n) {
+  const double e = laves__open_excess(s, p), distance = sqrt(n->distance2);
+  const double value = fmin(distance, laves__open_cap_distance(s, p, e, distance));
+  return e > 0 ? -value : value;
+}
+
+/* Away from plain faces: the nearer of triangles and caps. */
 static bool open_project(const laves__surface *s, laves__vec3 p, double reach, uint32_t *hint, laves__vec3 *foot,
                          laves__vec3 *normal) {
   const laves__nearest n = nearest_part(s, p, reach * reach);
   const double e = laves__open_excess(s, p), distance = n.slot == LAVES__NONE ? reach : sqrt(n.distance2);
   laves__vec3 uphill;
-  const double guess = laves__open_cap_distance(s, p, e, distance, &uphill);
+  const double guess = laves__open_cap_guess(s, p, e, distance, &uphill);
   *hint = n.slot;
   if (guess < distance && laves__open_project(s, p, e, guess, uphill, distance, foot, normal)) return true;
   if (n.slot == LAVES__NONE) return false;
@@ -148,22 +160,21 @@ static bool open_project(const laves__surface *s, laves__vec3 p, double reach, u
 }
 
 static laves__side open_side(const laves__surface *s, laves__vec3 p, double reach) {
-  const laves__nearest n = nearest(s, p, LAVES__NO_HINT);
   const double e = laves__open_excess(s, p);
-  if (!(sqrt(n.distance2) > reach * (1 + 1e-9)) || !laves__open_ball_is_certain(s, p, e, reach)) return LAVES__UNDECIDED;
+  if (!laves__open_ball_is_certain(s, p, e, reach)) return LAVES__UNDECIDED;
   return e > 0 ? LAVES__INSIDE : LAVES__OUTSIDE;
 }
 
 /* ---- the oracle ---- */
 
 static double signed_distance(const laves__surface *s, laves__vec3 p, const laves__nearest *n) {
-  if (s->open) {
-    const double e = laves__open_excess(s, p);
-    return e > 0 ? -open_distance(s, p, e, n) : open_distance(s, p, e, n);
-  }
   int on;
   const laves__vec3 foot = laves__triangle_closest(&s->bvh.triangles[n->slot], p, &on);
-  if (is_doubtful(s, n->slot, on)) return signed_distance_by_winding(s, p, n);
+  if (s->open) {
+    if (!is_plain(s, p, n, on)) return open_value(s, p, n);
+  } else if (is_doubtful(s, n->slot, on)) {
+    return signed_distance_by_winding(s, p, n);
+  }
   const double distance = sqrt(n->distance2);
   return v3_dot(v3_sub(p, foot), feature_normal(s, n->slot, on)) < 0 ? -distance : distance;
 }
@@ -181,12 +192,14 @@ static void evaluate(const void *self, size_t count, const laves__vec3 *points, 
 
 static bool project(const void *self, laves__vec3 point, double reach, uint32_t *hint, laves__vec3 *foot, laves__vec3 *normal) {
   const laves__surface *s = self;
-  if (s->open) return open_project(s, point, reach, hint, foot, normal);
   laves__nearest n = nearest_from(s, point, reach * reach, *hint);
-  if (n.slot == LAVES__NONE) return false;
+  if (n.slot == LAVES__NONE) return s->open && open_project(s, point, reach, hint, foot, normal);
   int on;
   uint32_t other = LAVES__NONE;
-  if (s->needs_winding && (s->face_flags[n.slot] & LAVES__PARTIAL) != 0) {
+  if (s->open) {
+    *foot = laves__triangle_closest(&s->bvh.triangles[n.slot], point, &on);
+    if (!is_plain(s, point, &n, on)) return open_project(s, point, reach, hint, foot, normal);
+  } else if (s->needs_winding && (s->face_flags[n.slot] & LAVES__PARTIAL) != 0) {
     n = nearest_part(s, point, reach * reach);
     if (n.slot == LAVES__NONE) return false;
     closest_part(s, n.slot, point, foot, &on, &other);
@@ -237,6 +250,7 @@ void laves__surface_free(laves_context *context, void *self) {
   laves__free(context, s->tags, s->face_capacity, sizeof *s->tags);
   laves__free(context, s->across, 3 * s->face_capacity, sizeof *s->across);
   laves__winding_free(context, &s->winding);
+  laves__free(context, s->rim_lengths, s->rim_tree.node_capacity, sizeof *s->rim_lengths);
   laves__bvh_free(context, &s->rim_tree);
   laves__free(context, s->rim, s->rim_capacity, sizeof *s->rim);
   laves__bvh_free(context, &s->all);

@@ -31,16 +31,11 @@ static void add_first(double first[6], laves__vec3 offset, laves__vec3 v) {
   first[5] += offset.z * v.x + offset.x * v.z;
 }
 
-static uint32_t leaf_first(uint32_t child) { return child & 0x0fffffffu; }
-static uint32_t leaf_last(uint32_t child) { return (child & 0x0fffffffu) + (child >> 28 & 7); }
-/* Unused places are far away; see LAVES__LEAF_BIT. */
-static bool is_used(const laves__bvh_node *n, int i) { return n->centre[0][i] < 1e16f; }
-
 static void sum_centre(const laves__winding *w, const laves__bvh_node *n, laves__moment *m) {
   laves__vec3 sum = v3(0, 0, 0), plain = v3(0, 0, 0);
   double plain_count = 0;
   for (int i = 0; i < 4; i++) {
-    if (!is_used(n, i)) continue;
+    if (!laves__bvh_is_used(n, i)) continue;
     if (!(n->child[i] & LAVES__LEAF_BIT)) {
       const laves__moment *below = &w->moments[n->child[i]];
       m->area += below->area;
@@ -50,7 +45,7 @@ static void sum_centre(const laves__winding *w, const laves__bvh_node *n, laves_
       plain_count++;
       continue;
     }
-    for (uint32_t slot = leaf_first(n->child[i]); slot <= leaf_last(n->child[i]); slot++) {
+    for (uint32_t slot = laves__leaf_first(n->child[i]); slot <= laves__leaf_last(n->child[i]); slot++) {
       const laves__triangle *t = &w->bvh->triangles[slot];
       const laves__vec3 a = v3_scale(area_vector2(t), 0.5);
       m->area += v3_norm(a);
@@ -65,7 +60,7 @@ static void sum_centre(const laves__winding *w, const laves__bvh_node *n, laves_
 
 static void sum_about_centre(const laves__winding *w, const laves__bvh_node *n, laves__moment *m) {
   for (int i = 0; i < 4; i++) {
-    if (!is_used(n, i)) continue;
+    if (!laves__bvh_is_used(n, i)) continue;
     if (!(n->child[i] & LAVES__LEAF_BIT)) {
       const laves__moment *below = &w->moments[n->child[i]];
       const laves__vec3 offset = v3_sub(below->centre, m->centre);
@@ -74,7 +69,7 @@ static void sum_about_centre(const laves__winding *w, const laves__bvh_node *n, 
       m->radius = fmax(m->radius, v3_norm(offset) + below->radius);
       continue;
     }
-    for (uint32_t slot = leaf_first(n->child[i]); slot <= leaf_last(n->child[i]); slot++) {
+    for (uint32_t slot = laves__leaf_first(n->child[i]); slot <= laves__leaf_last(n->child[i]); slot++) {
       const laves__triangle *t = &w->bvh->triangles[slot];
       add_first(m->first, v3_sub(centroid(t), m->centre), v3_scale(area_vector2(t), 0.5));
       const double reach = fmax(v3_distance(t->a, m->centre), fmax(v3_distance(t->b, m->centre), v3_distance(t->c, m->centre)));
@@ -136,12 +131,12 @@ double laves__winding_number(const laves__winding *w, laves__vec3 p, uint32_t sk
     }
     const laves__bvh_node *n = &w->bvh->nodes[index];
     for (int i = 0; i < 4; i++) {
-      if (!is_used(n, i)) continue;
+      if (!laves__bvh_is_used(n, i)) continue;
       if (!(n->child[i] & LAVES__LEAF_BIT)) {
         stack[top++] = n->child[i];
         continue;
       }
-      for (uint32_t slot = leaf_first(n->child[i]); slot <= leaf_last(n->child[i]); slot++)
+      for (uint32_t slot = laves__leaf_first(n->child[i]); slot <= laves__leaf_last(n->child[i]); slot++)
         if (!skips || (slot != skip_a && slot != skip_b)) sum += 2 * half_solid_angle(&w->bvh->triangles[slot], p);
     }
   }
