@@ -65,6 +65,16 @@ static void mask_records(void *user, size_t begin, size_t end, int worker) {
   }
 }
 
+/* The first vertex of a parted site follows the same rule; only the layer knows which one it is: copies come right behind. */
+static void unmask_dead_parted(assembly *a) {
+  const laves__layer *layer = a->layer;
+  for (size_t v = 0; v + 1 < layer->vertex_count; v++) {
+    const uint32_t id = layer->origin[v];
+    if (id == LAVES__NO_ORIGIN || layer->origin[v + 1] != LAVES__NO_ORIGIN || is_alive(layer, (int32_t)v)) continue;
+    a->mask[id / LAVES__C15_SITES] &= ~(UINT32_C(1) << id % LAVES__C15_SITES);
+  }
+}
+
 static void count_bricks(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const assembly *a = user;
@@ -114,10 +124,12 @@ static int32_t record_vertex(const assembly *a, int32_t record, int site) {
 static int64_t number_layer(assembly *a, int64_t next) {
   for (size_t v = 0; v < a->layer->vertex_count; v++) {
     const uint32_t id = a->layer->origin[v];
-    if (id != LAVES__NO_ORIGIN)
+    if (!is_alive(a->layer, (int32_t)v))
+      a->layer_id[v] = -1;
+    else if (id != LAVES__NO_ORIGIN)
       a->layer_id[v] = record_vertex(a, (int32_t)(id / LAVES__C15_SITES), (int)(id % LAVES__C15_SITES));
     else
-      a->layer_id[v] = is_alive(a->layer, (int32_t)v) ? (int32_t)next++ : -1;
+      a->layer_id[v] = (int32_t)next++;
   }
   return next;
 }
@@ -355,9 +367,9 @@ laves_result laves__assemble(const laves__frame *frame, laves__lattice *lattice,
   search.faces = laves__alloc(context, layer->tet_count, 1);
   if (!a.base || !a.mask || !a.record_first || !a.layer_id || !search.faces) goto memory;
 
-  if (!laves__parallel_for(context, "mesh", records, 64, mask_records, &a) ||
-      !laves__parallel_for(context, "mesh", slots, 16, count_bricks, &a))
-    goto cancelled;
+  if (!laves__parallel_for(context, "mesh", records, 64, mask_records, &a)) goto cancelled;
+  unmask_dead_parted(&a);
+  if (!laves__parallel_for(context, "mesh", slots, 16, count_bricks, &a)) goto cancelled;
   sum_bricks(&a);
   if (a.base[slots].vertex + (int64_t)layer->vertex_count > INT32_MAX) {
     result = laves__fail(error, LAVES_ERROR_OPTION, "the mesh would have %lld vertices, more than 2^31; choose a larger size",

@@ -1,0 +1,73 @@
+/* Whatever a callback answers, the mesh is valid or a sentence says why there is none. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fixtures/hard_solids.h"
+#include "fixtures/stages.h"
+
+static void mesh_or_sentence(laves_context *context, const laves_function *function, const laves_options *options,
+                             const char *name) {
+  laves_domain *domain;
+  laves_error error = {.text = ""};
+  laves_mesh *mesh;
+  assert_int_equal(laves_domain_from_function(context, function, &domain, &error), LAVES_OK);
+  const double start = laves__cpu_seconds();
+  const laves_result result = laves_generate(context, domain, options, &mesh, NULL, &error);
+  if (getenv("LAVES_VERBOSE"))
+    print_message("%-45s %-20s %7zu tets %6.2f s %s\n", name, laves_result_name(result), mesh ? mesh->tet_count : 0,
+                  laves__cpu_seconds() - start, error.text);
+  if (result == LAVES_OK || result == LAVES_TARGET_MISSED) {
+    check_valid(context, mesh, name);
+  } else {
+    assert_null(mesh);
+    if (result != LAVES_ERROR_INPUT && result != LAVES_ERROR_OPTION) fail_msg("%s: %s", name, laves_result_name(result));
+    assert_true(error.text[0]);
+  }
+  laves_mesh_free(mesh);
+  laves_domain_free(domain);
+  assert_int_equal(laves_context_bytes(context), 0);
+}
+
+/* Every `step`-th solid, from the first on. */
+static void mesh_all(const laves_options *options, int first, int step) {
+  laves_context *context = laves_context_create(NULL);
+  for (int i = first; i < hard_solid_count; i += step) {
+    const laves_function function = hard_function(&hard_solids[i]);
+    mesh_or_sentence(context, &function, options, hard_solids[i].name);
+  }
+  laves_context_free(context);
+}
+
+static void coarse(void **state) {
+  (void)state;
+  const laves_options options = options_of_size(0.23);
+  mesh_all(&options, 0, 1);
+}
+
+static void fine(void **state) {
+  (void)state;
+  laves_options options = options_of_size(0.12);
+  options.improve = false;
+  mesh_all(&options, 0, 2);
+  options.improve = true;
+  mesh_all(&options, 1, 4);
+}
+
+static void with_a_wished_count(void **state) {
+  (void)state;
+  laves_options options = options_of_tets(3000);
+  mesh_all(&options, 1, 4);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(coarse),
+      cmocka_unit_test(fine),
+      cmocka_unit_test(with_a_wished_count),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
