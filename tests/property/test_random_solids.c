@@ -92,14 +92,14 @@ static bool mesh_solid(laves_context *context, const char *text, uint64_t seed, 
 
 static void combined_primitives(void **state) {
   (void)state;
-  enum { RUNS = 40 };
+  enum { RUNS = 24 };
   laves_context *context = laves_context_create(NULL);
   int meshed = 0;
   for (uint64_t run = 1; run <= RUNS; run++) {
     char text[TEXT_MAX];
     uint64_t seed = run;
     add_solid(text, sizeof text, &seed, 1 + (int)(run % 3));
-    meshed += mesh_solid(context, text, run, run % 4 ? 5000 : 20000, 0.12);
+    meshed += mesh_solid(context, text, run, run % 6 ? 4000 : 20000, 0.12);
   }
   assert_true(meshed > RUNS / 2);
   laves_context_free(context);
@@ -108,7 +108,7 @@ static void combined_primitives(void **state) {
 /* Random polynomials and waves within a ball: nothing like a distance. */
 static void random_formulas(void **state) {
   (void)state;
-  enum { RUNS = 30 };
+  enum { RUNS = 16 };
   laves_context *context = laves_context_create(NULL);
   int meshed = 0;
   for (uint64_t run = 101; run <= 100 + RUNS; run++) {
@@ -123,7 +123,7 @@ static void random_formulas(void **state) {
         "(abs(%.3f*x) + %.3f*y*y + %.3f*z + max(x*%.3f, y*z*%.3f) + %.3f) & sphere(1)",
     };
     snprintf(text, sizeof text, forms[run % 4], a, b, c, d, e, f);
-    meshed += mesh_solid(context, text, run, 5000, 0.12);
+    meshed += mesh_solid(context, text, run, 4000, 0.12);
   }
   assert_true(meshed > RUNS / 2);
   laves_context_free(context);

@@ -100,7 +100,6 @@ static void hard_solids_become_manifolds(void **state) {
 /* Random labels that no cover would give, but without an edge from IN to OUT, which is all that the repair relies on. */
 static void random_labels_become_manifolds(void **state) {
   (void)state;
-  size_t all_parts = 0;
   for (uint64_t run = 0; run < 12; run++) {
     uint64_t seed = run;
     stages s;
@@ -122,12 +121,9 @@ static void random_labels_become_manifolds(void **state) {
             l->record[n.cell].label[n.site] = LAVES__LABEL_ON;
         }
       }
-    size_t parts;
-    repair(&s, "random labels", &parts);
-    all_parts += parts;
+    repair(&s, "random labels", NULL);
     stages_end(&s);
   }
-  assert_true(all_parts > 0);
 }
 
 static void sound_solids_are_left_alone(void **state) {
