@@ -164,6 +164,8 @@ static laves_result judge(run *r, const laves_mesh *mesh) {
   if (report->pinches)
     warn(r, "at %zu places the solid is thinner than the size, or its parts closer; walls were trimmed or parts set apart there",
          report->pinches);
+  if (r->counts.specks)
+    warn(r, "%zu parts of a few tetrahedra, beyond places thinner than the size, were dropped", r->counts.specks);
   if (report->off_surface)
     warn(r, "%zu boundary vertices stand off the surface, where it is too sharp or thin for the size", report->off_surface);
   if (report->outside_window)

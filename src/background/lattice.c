@@ -141,7 +141,9 @@ uint32_t laves__star_kept(const laves__lattice *lattice, int32_t record, int sit
       any_out = label == LAVES__LABEL_OUT;
       any_in |= label == LAVES__LABEL_IN;
     }
-    if (any_in && !any_out) kept |= UINT32_C(1) << k;
+    if (any_out) continue;
+    const int32_t owner = r->around[star.cell];
+    if (any_in || (owner >= 0 && laves__bit(lattice->record[owner].solid, star.tet))) kept |= UINT32_C(1) << k;
   }
   return kept;
 }

@@ -40,6 +40,9 @@ typedef struct laves__record {
   int8_t label[LAVES__C15_SITES];   /* laves__label */
   uint8_t depth[LAVES__C15_SITES];  /* edges to the nearest ON site, up to LAVES__DEPTH_MAX */
   int32_t vertex[LAVES__C15_SITES]; /* index in the boundary layer, or -1 */
+  uint32_t forced;                  /* bit for each site: ON for the sake of a thin part */
+  uint64_t solid[3];                /* bit t: tetrahedron t, all four corners ON, is part of the mesh (a thin wall) */
+  uint64_t eligible[3];             /* bit t: such a tetrahedron has a good enough shape to be part of it */
   uint64_t stamped[3];              /* bit t: tetrahedron t of the cell is in the mesh as an exact tile */
   uint64_t layer[3];                /* bit t: tetrahedron t of the cell is in the boundary layer */
 } laves__record;
@@ -102,10 +105,15 @@ static inline void laves__tet_sites(const laves__record *record, int tet, laves_
   }
 }
 
-/* A tetrahedron is part of the mesh when none of its corners is OUT and at least one is IN. */
+/* A tetrahedron is part of the mesh when none of its corners is OUT and at least one is IN; and where all four are ON, when
+ * its cell's `solid` says so, which this function does not look at. */
 bool laves__tet_kept(const laves__lattice *lattice, const laves__site corners[4]);
 
 /* Which of the tetrahedra around a site are part of the mesh: bit k for laves__c15_star[site][k]. */
 uint32_t laves__star_kept(const laves__lattice *lattice, int32_t record, int site);
+
+/* Bits of tetrahedra. */
+static inline bool laves__bit(const uint64_t set[3], int tet) { return set[tet >> 6] >> (tet & 63) & 1; }
+static inline void laves__flip_bit(uint64_t set[3], int tet) { set[tet >> 6] ^= UINT64_C(1) << (tet & 63); }
 
 #endif

@@ -250,6 +250,12 @@ static bool is_deep_brick(const laves__lattice *l, const int32_t b[3]) {
   return true;
 }
 
+static bool is_in_directory(const laves__lattice *l, const int32_t cell[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    if (cell[axis] < l->lower[axis] || cell[axis] >= l->lower[axis] + l->bricks[axis] * LAVES__BRICK_SIDE) return false;
+  return true;
+}
+
 /* Records for an inside cell and the outside cells that touch it. */
 static bool seal_cell(laves__lattice *l, int32_t x, int32_t y, int32_t z) {
   if (laves__lattice_cell(l, x, y, z) != LAVES__IN) return true;
@@ -258,10 +264,7 @@ static bool seal_cell(laves__lattice *l, int32_t x, int32_t y, int32_t z) {
     const int32_t n[3] = {x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1};
     if (laves__lattice_cell(l, n[0], n[1], n[2]) != LAVES__OUT) continue;
     touches = true;
-    bool within = true;
-    for (int axis = 0; axis < 3; axis++)
-      within &= n[axis] >= l->lower[axis] && n[axis] < l->lower[axis] + l->bricks[axis] * LAVES__BRICK_SIDE;
-    if (within && laves__lattice_add_record(l, n[0], n[1], n[2]) < 0) return false;
+    if (is_in_directory(l, n) && laves__lattice_add_record(l, n[0], n[1], n[2]) < 0) return false;
   }
   return !touches || laves__lattice_add_record(l, x, y, z) >= 0;
 }
@@ -283,13 +286,28 @@ static bool seal_cells(laves__lattice *l) {
   return true;
 }
 
-/* Likewise, no edge from a site may cross into a cell without a record. */
+/* Likewise, no tet around an inner site may belong to an outside cell without a record. */
+static bool seal_owners(laves__lattice *l, size_t index) {
+  const int32_t at[3] = {l->record[index].xyz[0], l->record[index].xyz[1], l->record[index].xyz[2]};
+  for (int site = 0; site < LAVES__C15_SITES; site++)
+    for (int k = 0; k < laves__c15_star_size[site] && l->record[index].sign[site] < 0; k++) {
+      const int cell = laves__c15_star[site][k].cell;
+      const int32_t n[3] = {at[0] + cell % 3 - 1, at[1] + cell / 3 % 3 - 1, at[2] + cell / 9 - 1};
+      if (laves__lattice_cell(l, n[0], n[1], n[2]) == LAVES__OUT && is_in_directory(l, n) &&
+          laves__lattice_add_record(l, n[0], n[1], n[2]) < 0)
+        return false;
+    }
+  return true;
+}
+
+/* And no edge from a site may cross into a cell without a record. */
 static bool seal_record(laves__lattice *l, size_t index) {
   const laves__record *r = &l->record[index];
   bool has[2] = {false, false}, beside[2] = {false, false}; /* signs within; cells around: 0 inside, 1 outside */
   for (int site = 0; site < LAVES__C15_SITES; site++) has[r->sign[site] > 0] = true;
   for (int k = 0; k < 27; k++)
     if (r->around[k] < 0) beside[r->around[k] == LAVES__OUT] = true;
+  if (has[0] && beside[1] && !seal_owners(l, index)) return false;
   if (!(has[0] && beside[1]) && !(has[1] && beside[0])) return true;
   const int32_t at[3] = {r->xyz[0], r->xyz[1], r->xyz[2]};
   for (int site = 0; site < LAVES__C15_SITES; site++)
@@ -299,8 +317,7 @@ static bool seal_record(laves__lattice *l, size_t index) {
       if (s.cell >= 0 || laves__site_sign(l, s) == r->sign[site]) continue;
       const int cell = laves__c15_neighbour[site][k].cell;
       const int32_t n[3] = {at[0] + cell % 3 - 1, at[1] + cell / 3 % 3 - 1, at[2] + cell / 9 - 1};
-      for (int axis = 0; axis < 3; axis++)
-        if (n[axis] < l->lower[axis] || n[axis] >= l->lower[axis] + l->bricks[axis] * LAVES__BRICK_SIDE) return true;
+      if (!is_in_directory(l, n)) return true;
       if (laves__lattice_add_record(l, n[0], n[1], n[2]) < 0) return false;
     }
   return true;

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 
 #include "improve/contract.h"
+#include "improve/peel.h"
 #include "improve/relax.h"
 #include "improve/smooth.h"
 
@@ -17,6 +18,7 @@ enum { SWEEPS = 2, SMOOTH_PASSES = 5, CONTRACT_PASSES = 12, THOROUGH_ROUNDS = 3,
 static const double block_side = 15;       /* sizes; see above */
 static const double worthwhile = 0.02;     /* share of bad tets that a pass must cure to be followed by its like */
 static const double thorough_below = 0.96; /* quality below which the few that remain get more patience */
+static const double peel_below = 0.5;      /* quality below which a tet between two surfaces is taken away, if it can be */
 static const double settle_floor = 0.2;    /* quality that bringing a vertex back to the surface may cost: about 18 degrees */
 
 laves__measure laves__measure_of(const laves__window *w) {
@@ -176,6 +178,15 @@ static void settle_all(work *w) {
       laves__settle_vertex(w->frame, &w->measure, settle_floor, w->layer, (int32_t)v);
 }
 
+/* Takes away the flat tets of thin walls, until none of them can be. */
+static void peel_all(work *w) {
+  for (bool again = true; again;) {
+    again = false;
+    for (size_t t = 0; t < w->layer->tet_count; t++)
+      if (w->layer->tet[t][0] >= 0 && w->layer->quality[t] < peel_below && laves__peel_tet(w->layer, (int32_t)t)) again = true;
+  }
+}
+
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {
   laves_context *context = layer->context;
   work w = {.frame = frame, .measure = laves__measure_of(window), .target = 1, .admit = 1, .layer = layer};
@@ -196,6 +207,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   if (result == LAVES_OK) settle_all(&w);
   w.rounds = 1;
   if (result == LAVES_OK) result = run_passes(&w, CONTRACT_PASSES, 2, error);
+  if (result == LAVES_OK) peel_all(&w);
   w.rounds = THOROUGH_ROUNDS;
   w.admit = thorough_below;
   for (size_t t = 0; t < layer->tet_count; t++) {
@@ -203,6 +215,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
     w.tries[t] = 0;
   }
   if (result == LAVES_OK) result = run_passes(&w, CONTRACT_PASSES, 2, error);
+  if (result == LAVES_OK) peel_all(&w);
   if (result == LAVES_OK) settle_all(&w);
 cleanup:
   for (int i = 0; w.journal && i < workers; i++) laves__journal_free(&w.journal[i]);

@@ -36,6 +36,7 @@ static void find_places(void *user, size_t begin, size_t end, int worker) {
       for (int k = 0; k < 4; k++) {
         const int32_t w = layer->tet[star->tet[i]][k];
         if (w == (int32_t)v || layer->depth[w] != 0) continue;
+        if (v3_dot(layer->normal[v], layer->normal[w]) <= 0) continue; /* the other side of a thin wall */
         sum = v3_add(sum, layer->position[w]);
         count++;
       }
@@ -60,7 +61,7 @@ static void measure_tets(void *user, size_t begin, size_t end, int worker) {
   const sweep *s = user;
   for (size_t t = begin; t < end; t++) {
     bool touched = false;
-    for (int k = 0; k < 4; k++) touched |= s->other[s->layer->tet[t][k]].moved;
+    for (int k = 0; k < 4 && s->layer->tet[t][0] >= 0; k++) touched |= s->other[s->layer->tet[t][k]].moved;
     if (touched) s->layer->quality[t] = laves__layer_quality(s->measure, s->layer, (int32_t)t);
   }
 }
@@ -79,7 +80,7 @@ static void take_back(sweep *s, double worst) {
   for (bool again = true; again;) {
     again = false;
     for (size_t t = 0; t < layer->tet_count; t++) {
-      if (!is_worse(layer, (int32_t)t, worst)) continue;
+      if (layer->tet[t][0] < 0 || !is_worse(layer, (int32_t)t, worst)) continue;
       for (int k = 0; k < 4; k++) {
         const int32_t v = layer->tet[t][k];
         if (!s->other[v].moved) continue;
@@ -102,7 +103,7 @@ laves_result laves__relax_surface(const laves__frame *frame, const laves__measur
   if (!s.other) return laves__fail_memory(context, error);
   double worst = HUGE_VAL;
   for (size_t t = 0; t < layer->tet_count; t++)
-    if (layer->quality[t] < worst) worst = layer->quality[t];
+    if (layer->tet[t][0] >= 0 && layer->quality[t] < worst) worst = layer->quality[t];
   bool done = true;
   for (int i = 0; done && i < sweeps; i++) {
     done =

@@ -14,12 +14,10 @@
 #include "base/sort.h"
 #include "snap/snap.h"
 
-/* How far, in sizes, the foot of a site with a crossing edge can be: the longest edge and room for projection errors. */
-static const double foot_reach = 1.25;
-
 typedef struct candidates {
   const laves__frame *frame;
   laves__lattice *lattice;
+  const laves__feet *feet;
   uint64_t *key; /* distance, then record * 24 + site */
   size_t count;
 } candidates;
@@ -28,59 +26,6 @@ static bool has_crossing(const laves__lattice *lattice, const laves__record *r, 
   for (int k = 0; k < laves__c15_degree[site]; k++)
     if (laves__site_sign(lattice, laves__neighbour(r, site, k)) != r->sign[site]) return true;
   return false;
-}
-
-/* The crossing of the edge from a to b nearest to a, by bisection on the sign at a. */
-static double bisect_edge(const laves__frame *frame, laves__vec3 a, laves__vec3 b, int sign_a) {
-  enum { STEPS = 40 };
-  double low = 0, high = 1;
-  for (int i = 0; i < STEPS; i++) {
-    const double middle = 0.5 * (low + high);
-    const laves__vec3 p = v3_lerp(a, b, middle);
-    double phi;
-    laves__frame_evaluate(frame, 1, &p, &phi, NULL);
-    if ((phi < 0 ? -1 : 1) == sign_a)
-      low = middle;
-    else
-      high = middle;
-  }
-  return high;
-}
-
-static bool nearest_crossing(const laves__frame *frame, const laves__lattice *lattice, const laves__record *r, int site,
-                             uint32_t *hint, laves__vec3 *foot, laves__vec3 *normal) {
-  const laves__vec3 a = laves__site_position(r->xyz, site);
-  double nearest = HUGE_VAL;
-  for (int k = 0; k < laves__c15_degree[site]; k++) {
-    const laves__site s = laves__neighbour(r, site, k);
-    if (s.cell < 0 || laves__site_sign(lattice, s) == r->sign[site]) continue;
-    const laves__vec3 b = laves__site_position(lattice->record[s.cell].xyz, s.site);
-    const laves__vec3 crossing = v3_lerp(a, b, bisect_edge(frame, a, b, r->sign[site]));
-    const double distance = v3_distance(a, crossing);
-    if (distance >= nearest) continue;
-    nearest = distance;
-    *foot = crossing;
-    *normal = v3_unit(v3_scale(v3_sub(b, a), -r->sign[site]));
-  }
-  if (nearest == HUGE_VAL) return false;
-  laves__vec3 polished, polished_normal;
-  static const double polish_reach = 1e-3;
-  *hint = LAVES__NO_HINT;
-  if (laves__frame_project(frame, *foot, polish_reach, hint, &polished, &polished_normal) &&
-      v3_distance(polished, *foot) < polish_reach) {
-    *foot = polished;
-    *normal = polished_normal;
-  }
-  return true;
-}
-
-bool laves__site_foot(const laves__frame *frame, const laves__lattice *lattice, int32_t record, int site, uint32_t *hint,
-                      laves__vec3 *foot, laves__vec3 *normal) {
-  const laves__record *r = &lattice->record[record];
-  const laves__vec3 p = laves__site_position(r->xyz, site);
-  *hint = r->hint[site];
-  if (laves__frame_project(frame, p, foot_reach, hint, foot, normal) && v3_distance(p, *foot) <= foot_reach) return true;
-  return nearest_crossing(frame, lattice, r, site, hint, foot, normal);
 }
 
 /* |phi| where that is a distance, else the distance to the foot that projection finds. */
@@ -93,11 +38,8 @@ static void measure(void *user, size_t begin, size_t end, int worker) {
     const int site = (int)(id % LAVES__C15_SITES);
     double distance = fabs(c->lattice->record[record].phi[site]);
     if (!c->frame->oracle->is_distance) {
-      uint32_t hint;
-      laves__vec3 foot, normal;
-      distance = foot_reach;
-      if (laves__site_foot(c->frame, c->lattice, record, site, &hint, &foot, &normal))
-        distance = v3_distance(laves__site_position(c->lattice->record[record].xyz, site), foot);
+      const laves__foot *foot = laves__feet_get(c->feet, record, site);
+      distance = foot ? v3_distance(laves__site_position(c->lattice->record[record].xyz, site), foot->position) : HUGE_VAL;
     }
     c->key[i] = laves__sort_key(distance < 1e30 ? distance : 1e30, id);
   }
@@ -145,12 +87,12 @@ static void cover(const candidates *c) {
   }
 }
 
-laves_result laves__cover(const laves__frame *frame, laves__lattice *lattice, laves_error *error) {
+laves_result laves__cover(const laves__frame *frame, laves__lattice *lattice, laves__feet *feet, laves_error *error) {
   laves_context *context = lattice->context;
   const size_t records = lattice->record_count;
   laves_result result = LAVES_OK;
   uint64_t *scratch = NULL;
-  candidates c = {.frame = frame, .lattice = lattice};
+  candidates c = {.frame = frame, .lattice = lattice, .feet = feet};
   size_t capacity = 0;
   gather g = {lattice, laves__alloc(context, records, sizeof *g.mask)};
   if (!g.mask) {
@@ -161,6 +103,8 @@ laves_result laves__cover(const laves__frame *frame, laves__lattice *lattice, la
     result = laves__fail_cancelled(error);
     goto cleanup;
   }
+  if (!frame->oracle->is_distance) result = laves__feet_find(frame, lattice, g.mask, feet, error);
+  if (result != LAVES_OK) goto cleanup;
   for (size_t i = 0; i < records; i++) capacity += (size_t)__builtin_popcount(g.mask[i]);
   c.key = laves__alloc(context, capacity, sizeof *c.key);
   scratch = laves__alloc(context, capacity, sizeof *scratch);

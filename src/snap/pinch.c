@@ -11,6 +11,8 @@
  *     KKKK......     KK.....KK             ..KKKKK..
  *     KKKv......     ...v.....             ...v.....
  *
+ * - First, tets with four corners ON are added or taken away where that leaves fewer pieces around their corners; each such
+ *   change lowers the sum of all surplus pieces, so this ends.
  * - A piece of K whose complement falls apart is a wall through which the site reaches both sides: the wall is thinner
  *   than the lattice resolves. The site goes OUT, and the IN sites around it go ON: the wall is trimmed there. Labels only
  *   ever go IN -> ON -> OUT, so this ends.
@@ -64,6 +66,18 @@ static verdict judge(const star_graph *g, uint32_t kept) {
   return parts ? PARTS : FAN;
 }
 
+static int count_pieces(const star_graph *g, uint32_t set) {
+  int count = 0;
+  for (; set; set &= ~first_piece(g, set)) count++;
+  return count;
+}
+
+/* Pieces of K and of its complement beyond one of each. */
+static int surplus(const star_graph *g, uint32_t kept) {
+  if (kept == 0 || kept == g->all) return 0;
+  return count_pieces(g, kept) + count_pieces(g, g->all & ~kept) - 2;
+}
+
 typedef struct repair {
   laves__lattice *lattice;
   star_graph graph[LAVES__C15_SITES];
@@ -81,6 +95,42 @@ static void judge_records(void *user, size_t begin, size_t end, int worker) {
       if (r->label[site] == LAVES__LABEL_ON) *v = (uint8_t)judge(&w->graph[site], laves__star_kept(w->lattice, (int32_t)i, site));
     }
   }
+}
+
+/* The surplus around the four corners of a tet. */
+static int tet_surplus(const repair *w, const laves__site corner[4]) {
+  int sum = 0;
+  for (int k = 0; k < 4; k++)
+    sum += surplus(&w->graph[corner[k].site], laves__star_kept(w->lattice, corner[k].cell, corner[k].site));
+  return sum;
+}
+
+/* Adds or takes away the one tet with four corners ON around a site that lowers the surplus most; false when none does. */
+static bool toggle_one(const repair *w, int32_t record, int site) {
+  const laves__record *r = &w->lattice->record[record];
+  laves__record *best = NULL;
+  int best_gain = 0, best_tet = 0;
+  for (int k = 0; k < laves__c15_star_size[site]; k++) {
+    const laves__c15_star_tet star = laves__c15_star[site][k];
+    if (r->around[star.cell] < 0) continue;
+    laves__record *owner = &w->lattice->record[r->around[star.cell]];
+    if (!laves__bit(owner->solid, star.tet) && !laves__bit(owner->eligible, star.tet)) continue;
+    laves__site corner[4];
+    laves__tet_sites(owner, star.tet, corner);
+    bool on = true;
+    for (int j = 0; j < 4; j++) on &= corner[j].cell >= 0 && laves__site_label(w->lattice, corner[j]) == LAVES__LABEL_ON;
+    if (!on) continue;
+    const int before = tet_surplus(w, corner);
+    laves__flip_bit(owner->solid, star.tet);
+    const int gain = before - tet_surplus(w, corner);
+    laves__flip_bit(owner->solid, star.tet);
+    if (gain <= best_gain) continue;
+    best_gain = gain;
+    best = owner;
+    best_tet = star.tet;
+  }
+  if (best) laves__flip_bit(best->solid, best_tet);
+  return best != NULL;
 }
 
 /* Gives every cell around a record one of its own, so that labels can be changed there. */
@@ -147,6 +197,7 @@ static laves_result repair_round(repair *w, laves__parted *parted, size_t *pinch
     const int32_t record = (int32_t)(id / LAVES__C15_SITES);
     const int site = (int)(id % LAVES__C15_SITES);
     if (w->verdicts[id] == FAN) continue;
+    while (w->verdicts[id] != INTERIOR && toggle_one(w, record, site)) *again = true;
     const verdict now = judge(&w->graph[site], laves__star_kept(lattice, record, site)); /* after earlier changes */
     if (now == INTERIOR) {
       lattice->record[record].label[site] = LAVES__LABEL_IN;

@@ -44,10 +44,7 @@ static bool measure_depths(laves__lattice *lattice, size_t *vertex_count) {
     laves__record *r = &lattice->record[i];
     for (int site = 0; memory && site < LAVES__C15_SITES; site++) {
       if (r->label[site] != LAVES__LABEL_ON) continue;
-      bool bounds_kept = false;
-      for (int k = 0; k < laves__c15_degree[site] && !bounds_kept; k++)
-        bounds_kept = laves__site_label(lattice, laves__neighbour(r, site, k)) == LAVES__LABEL_IN;
-      if (!bounds_kept) continue;
+      if (laves__star_kept(lattice, (int32_t)i, site) == 0) continue;
       r->depth[site] = 0;
       memory = laves__grow(context, &queue, &capacity, count + 1, sizeof *queue);
       if (memory) queue[count++] = (uint32_t)i * LAVES__C15_SITES + (uint32_t)site;
@@ -105,7 +102,7 @@ static void sort_tets(void *user, size_t begin, size_t end, int worker) {
         any |= c;
         if ((c & CODE_DEPTH) < least) least = c & CODE_DEPTH;
       }
-      if (any & CODE_OUT || !(any & CODE_IN)) continue;
+      if (any & CODE_OUT || (!(any & CODE_IN) && !laves__bit(r->solid, tet))) continue;
       uint64_t *set = least <= LAVES__DEPTH_MOVES ? r->layer : r->stamped;
       set[tet >> 6] |= UINT64_C(1) << (tet & 63);
     }
@@ -181,24 +178,19 @@ static void number_tets(const laves__lattice *lattice, const laves__parted *part
   LAVES_ASSERT(next == layer->tet_count);
 }
 
-typedef struct placing {
-  const laves__frame *frame;
-  const laves__lattice *lattice;
-  laves__layer *layer;
-} placing;
-
-static void place_vertices(void *user, size_t begin, size_t end, int worker) {
-  (void)worker;
-  const placing *p = user;
-  for (size_t v = begin; v < end; v++) {
-    if (p->layer->depth[v] != 0 || p->layer->origin[v] == LAVES__NO_ORIGIN) continue;
-    const uint32_t id = p->layer->origin[v];
-    laves__vec3 foot;
-    if (laves__site_foot(p->frame, p->lattice, (int32_t)(id / LAVES__C15_SITES), (int)(id % LAVES__C15_SITES), &p->layer->hint[v],
-                         &foot, &p->layer->normal[v]))
-      p->layer->position[v] = foot;
-    else
-      p->layer->off_surface[v] = true;
+/* Surface vertices go to their feet; those without one stay. */
+static void place_vertices(const laves__feet *feet, laves__layer *layer) {
+  for (size_t v = 0; v < layer->vertex_count; v++) {
+    if (layer->depth[v] != 0 || layer->origin[v] == LAVES__NO_ORIGIN) continue;
+    const uint32_t id = layer->origin[v];
+    const laves__foot *foot = laves__feet_get(feet, (int32_t)(id / LAVES__C15_SITES), (int)(id % LAVES__C15_SITES));
+    if (!foot) {
+      layer->off_surface[v] = true;
+      continue;
+    }
+    layer->position[v] = foot->position;
+    layer->normal[v] = v3(foot->normal[0], foot->normal[1], foot->normal[2]);
+    layer->hint[v] = foot->hint;
   }
 }
 
@@ -213,7 +205,7 @@ static void place_copies(laves__layer *layer) {
   }
 }
 
-laves_result laves__layer_build(const laves__frame *frame, laves__lattice *lattice, laves__parted *parted, laves__layer *layer,
+laves_result laves__layer_build(const laves__feet *feet, laves__lattice *lattice, laves__parted *parted, laves__layer *layer,
                                 laves_error *error) {
   laves_context *context = lattice->context;
   size_t vertex_count = 0, tet_count = 0;
@@ -228,8 +220,7 @@ laves_result laves__layer_build(const laves__frame *frame, laves__lattice *latti
   if (result != LAVES_OK) return result;
   number_vertices(lattice, parted, layer);
   number_tets(lattice, parted, layer);
-  placing p = {frame, lattice, layer};
-  if (!laves__parallel_for(context, "snap", vertex_count, 64, place_vertices, &p)) return laves__fail_cancelled(error);
+  place_vertices(feet, layer);
   place_copies(layer);
   return laves__layer_link(layer, error);
 }
@@ -247,7 +238,7 @@ size_t laves__layer_untangle(laves__layer *layer, const laves__vec3 *start) {
   for (int round = 0;; round++) {
     bool bad = false;
     for (size_t t = 0; t < layer->tet_count; t++) {
-      if (is_positive(layer, (int32_t)t)) continue;
+      if (layer->tet[t][0] < 0 || is_positive(layer, (int32_t)t)) continue;
       bad = true;
       for (int k = 0; k < 4; k++) {
         const int32_t v = layer->tet[t][k];

@@ -13,19 +13,42 @@ static laves__vec3 *start_positions(const laves__lattice *lattice, const laves__
   return start;
 }
 
+/* The feet of all ON sites. */
+static laves_result find_surface_feet(const laves__frame *frame, const laves__lattice *lattice, laves__feet *feet,
+                                      laves_error *error) {
+  laves_context *context = lattice->context;
+  const size_t records = lattice->record_count;
+  uint32_t *wanted = laves__alloc_zeroed(context, records, sizeof *wanted);
+  if (!wanted) return laves__fail_memory(context, error);
+  for (size_t i = 0; i < records; i++)
+    for (int site = 0; site < LAVES__C15_SITES; site++)
+      if (lattice->record[i].label[site] == LAVES__LABEL_ON) wanted[i] |= UINT32_C(1) << site;
+  const laves_result result = laves__feet_find(frame, lattice, wanted, feet, error);
+  laves__free(context, wanted, records, sizeof *wanted);
+  return result;
+}
+
 laves_result laves__snap(const laves__frame *frame, laves__lattice *lattice, laves__layer *layer, laves__snap_counts *counts,
                          laves_error *error) {
   laves_context *context = lattice->context;
   laves__parted parted = {0};
+  laves__feet feet = {0};
   laves__vec3 *start = NULL;
-  laves_result result = laves__cover(frame, lattice, error);
+  laves_result result = laves__cover(frame, lattice, &feet, error);
+  if (result == LAVES_OK) result = laves__thin_cover(frame, lattice, &feet, error);
+  if (result == LAVES_OK) result = find_surface_feet(frame, lattice, &feet, error);
+  if (result == LAVES_OK) result = laves__tip_cover(frame, lattice, &feet, error);
+  if (result == LAVES_OK) result = laves__find_solid(frame, lattice, &feet, error);
   if (result == LAVES_OK) result = laves__pinch_repair(lattice, &parted, &counts->pinches, error);
-  if (result == LAVES_OK) result = laves__layer_build(frame, lattice, &parted, layer, error);
+  if (result == LAVES_OK) result = find_surface_feet(frame, lattice, &feet, error); /* of sites that went ON since */
+  if (result == LAVES_OK) result = laves__layer_build(&feet, lattice, &parted, layer, error);
+  laves__feet_free(&feet);
   if (result == LAVES_OK) {
     start = start_positions(lattice, layer);
     if (!start) result = laves__fail_memory(context, error);
   }
   if (result == LAVES_OK) {
+    counts->specks = laves__layer_drop_specks(layer);
     counts->off_surface = laves__layer_untangle(layer, start);
     for (size_t v = 0; v < layer->vertex_count; v++) counts->snapped += layer->depth[v] == 0;
   }

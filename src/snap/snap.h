@@ -2,10 +2,14 @@
  *
  * Every edge of the tiling whose ends differ in sign gets an end ON the surface; the vertices ON move to it; the tetrahedra
  * without an OUT vertex and with at least one IN vertex stay. No tile is cut, so the boundary layer keeps the tiling's good
- * connectivity. The three steps are separate files:
+ * connectivity. The steps are separate files:
  *
  *     cover.c   which vertices go ON: a small vertex cover of the crossing edges, nearest to the surface first
+ *     thin.c    walls that an edge crosses twice: both its ends go ON
+ *     tips.c    tips and ridges beyond the last sites inside: outer sites that reach them go ON
+ *     solid.c   tets with four corners ON: part of the mesh where they lie inside
  *     pinch.c   places where the result would touch itself are trimmed or parted, so that the boundary is a manifold
+ *     speck.c   parts of a few tets that hang together with nothing are dropped
  *     place.c   the boundary layer as a mesh of its own, ON vertices moved to the surface
  */
 #ifndef LAVES_SNAP_SNAP_H
@@ -13,10 +17,12 @@
 
 #include "background/lattice.h"
 #include "mesh/layer.h"
+#include "snap/feet.h"
 
 typedef struct laves__snap_counts {
   size_t snapped;     /* vertices ON the surface */
   size_t pinches;     /* vertices at which the boundary touched itself */
+  size_t specks;      /* parts too small to keep */
   size_t off_surface; /* vertices that stay off the surface to keep their tets positive */
 } laves__snap_counts;
 
@@ -27,8 +33,20 @@ typedef struct laves__snap_counts {
 laves_result laves__snap(const laves__frame *frame, laves__lattice *lattice, laves__layer *layer, laves__snap_counts *counts,
                          laves_error *error);
 
-/* The first step alone: labels. */
-laves_result laves__cover(const laves__frame *frame, laves__lattice *lattice, laves_error *error);
+/* The first step: labels. */
+laves_result laves__cover(const laves__frame *frame, laves__lattice *lattice, laves__feet *feet, laves_error *error);
+
+/* The second step: more labels ON (and forced), at thin walls. */
+laves_result laves__thin_cover(const laves__frame *frame, laves__lattice *lattice, laves__feet *feet, laves_error *error);
+
+/* And at tips and ridges. All ON sites must have been asked for their feet. */
+laves_result laves__tip_cover(const laves__frame *frame, laves__lattice *lattice, laves__feet *feet, laves_error *error);
+
+/* Whether a tet with these corners, all on the surface, has a shape that improvement can work with. */
+bool laves__solid_shape(const laves__vec3 p[4]);
+
+/* The third step: `solid` and `eligible` of all records. All ON sites must have been asked for their feet. */
+laves_result laves__find_solid(const laves__frame *frame, laves__lattice *lattice, const laves__feet *feet, laves_error *error);
 
 /* A site at which the kept tets form more than one fan; each fan becomes a vertex of its own. */
 typedef struct laves__parted_site {
@@ -43,18 +61,16 @@ typedef struct laves__parted {
   size_t count, capacity;
 } laves__parted;
 
-/* The second step: labels change until every ON site's kept tets form fans that each border on one piece of the outside;
+/* The fourth step: labels change until every ON site's kept tets form fans that each border on one piece of the outside;
  * sites with several fans are listed. Makes records where labels reach deeper. */
 laves_result laves__pinch_repair(laves__lattice *lattice, laves__parted *parted, size_t *pinches, laves_error *error);
 
-/* Where an ON site shall stand: the nearest point of the surface or, where that can't be found, the nearest crossing of
- * its own edges. False when neither exists (a site that was trimmed free). */
-bool laves__site_foot(const laves__frame *frame, const laves__lattice *lattice, int32_t record, int site, uint32_t *hint,
-                      laves__vec3 *foot, laves__vec3 *normal);
-
-/* The third step. */
-laves_result laves__layer_build(const laves__frame *frame, laves__lattice *lattice, laves__parted *parted, laves__layer *layer,
+/* The last step. */
+laves_result laves__layer_build(const laves__feet *feet, laves__lattice *lattice, laves__parted *parted, laves__layer *layer,
                                 laves_error *error);
+/* Removes specks: parts of a few tets without an inner vertex, that hang together with nothing else; returns how many parts
+ * went. The last part always stays. */
+size_t laves__layer_drop_specks(laves__layer *layer);
 /* Draws vertices back from the surface, as little as needed, until every tet is positive; counts them. */
 size_t laves__layer_untangle(laves__layer *layer, const laves__vec3 *start);
 

@@ -1,0 +1,131 @@
+/* The search for feet, and the memory of what was found. */
+#include "snap/feet.h"
+
+#include <string.h>
+
+/* How far, in sizes, a foot may be: the longest edge and room for projection errors. */
+static const double foot_reach = 1.25;
+/* How far a crossing found by bisection may be moved when it is polished by projection. */
+static const double polish_reach = 1e-3;
+
+/* The crossing of the edge from a to b nearest to a, by bisection on the sign at a, as a share of the edge. */
+static double bisect_edge(const laves__frame *frame, laves__vec3 a, laves__vec3 b, int sign_a) {
+  enum { STEPS = 40 };
+  double low = 0, high = 1;
+  for (int i = 0; i < STEPS; i++) {
+    const double middle = 0.5 * (low + high);
+    const laves__vec3 p = v3_lerp(a, b, middle);
+    double phi;
+    laves__frame_evaluate(frame, 1, &p, &phi, NULL);
+    if ((phi < 0 ? -1 : 1) == sign_a)
+      low = middle;
+    else
+      high = middle;
+  }
+  return high;
+}
+
+static void set_normal(laves__foot *foot, laves__vec3 n) {
+  foot->normal[0] = (float)n.x;
+  foot->normal[1] = (float)n.y;
+  foot->normal[2] = (float)n.z;
+}
+
+static bool nearest_crossing(const laves__frame *frame, const laves__lattice *lattice, const laves__record *r, int site,
+                             laves__foot *foot) {
+  const laves__vec3 a = laves__site_position(r->xyz, site);
+  double nearest = HUGE_VAL;
+  for (int k = 0; k < laves__c15_degree[site]; k++) {
+    const laves__site s = laves__neighbour(r, site, k);
+    if (s.cell < 0 || laves__site_sign(lattice, s) == r->sign[site]) continue;
+    const laves__vec3 b = laves__site_position(lattice->record[s.cell].xyz, s.site);
+    const laves__vec3 crossing = v3_lerp(a, b, bisect_edge(frame, a, b, r->sign[site]));
+    const double distance = v3_distance(a, crossing);
+    if (distance >= nearest) continue;
+    nearest = distance;
+    foot->position = crossing;
+    set_normal(foot, v3_unit(v3_scale(v3_sub(b, a), -r->sign[site])));
+  }
+  foot->hint = LAVES__NO_HINT;
+  if (nearest == HUGE_VAL) return false;
+  laves__vec3 polished, normal;
+  if (laves__frame_project(frame, foot->position, polish_reach, &foot->hint, &polished, &normal) &&
+      v3_distance(polished, foot->position) < polish_reach) {
+    foot->position = polished;
+    set_normal(foot, normal);
+  }
+  return true;
+}
+
+bool laves__site_foot(const laves__frame *frame, const laves__lattice *lattice, int32_t record, int site, laves__foot *foot) {
+  const laves__record *r = &lattice->record[record];
+  const laves__vec3 p = laves__site_position(r->xyz, site);
+  laves__vec3 normal;
+  foot->hint = r->hint[site];
+  if (laves__frame_project(frame, p, foot_reach, &foot->hint, &foot->position, &normal) &&
+      v3_distance(p, foot->position) <= foot_reach) {
+    set_normal(foot, normal);
+    return true;
+  }
+  return nearest_crossing(frame, lattice, r, site, foot);
+}
+
+typedef struct search {
+  const laves__frame *frame;
+  const laves__lattice *lattice;
+  const uint32_t *wanted;
+  laves__feet *feet;
+} search;
+
+static void find_feet(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const search *s = user;
+  for (size_t i = begin; i < end; i++)
+    for (uint32_t mask = s->wanted[i]; mask; mask &= mask - 1) {
+      const int site = __builtin_ctz(mask);
+      laves__foot *foot = &s->feet->block[s->feet->block_of[i]][site];
+      if (foot->state != LAVES__FOOT_UNKNOWN) continue;
+      foot->state = laves__site_foot(s->frame, s->lattice, (int32_t)i, site, foot) ? LAVES__FOOT_FOUND : LAVES__FOOT_NONE;
+    }
+}
+
+/* Blocks for the records that want feet and have none. */
+static bool make_blocks(const laves__lattice *lattice, const uint32_t *wanted, laves__feet *feet) {
+  laves_context *context = lattice->context;
+  if (feet->record_count < lattice->record_count) {
+    int32_t *grown = laves__realloc(context, feet->block_of, feet->record_count, lattice->record_count, sizeof *grown);
+    if (!grown) return false;
+    feet->block_of = grown;
+    while (feet->record_count < lattice->record_count) feet->block_of[feet->record_count++] = -1;
+  }
+  for (size_t i = 0; i < lattice->record_count; i++) {
+    if (!wanted[i] || feet->block_of[i] >= 0) continue;
+    if (!laves__grow(context, &feet->block, &feet->block_capacity, feet->block_count + 1, sizeof *feet->block)) return false;
+    memset(feet->block[feet->block_count], 0, sizeof *feet->block);
+    feet->block_of[i] = (int32_t)feet->block_count++;
+  }
+  return true;
+}
+
+laves_result laves__feet_find(const laves__frame *frame, const laves__lattice *lattice, const uint32_t *wanted, laves__feet *feet,
+                              laves_error *error) {
+  feet->context = lattice->context;
+  if (!make_blocks(lattice, wanted, feet)) return laves__fail_memory(lattice->context, error);
+  search s = {frame, lattice, wanted, feet};
+  if (!laves__parallel_for(lattice->context, "snap", lattice->record_count, 8, find_feet, &s))
+    return laves__fail_cancelled(error);
+  return LAVES_OK;
+}
+
+const laves__foot *laves__feet_get(const laves__feet *feet, int32_t record, int site) {
+  if ((size_t)record >= feet->record_count || feet->block_of[record] < 0) return NULL;
+  const laves__foot *foot = &feet->block[feet->block_of[record]][site];
+  return foot->state == LAVES__FOOT_FOUND ? foot : NULL;
+}
+
+void laves__feet_free(laves__feet *feet) {
+  if (!feet->context) return;
+  laves__free(feet->context, feet->block_of, feet->record_count, sizeof *feet->block_of);
+  laves__free(feet->context, feet->block, feet->block_capacity, sizeof *feet->block);
+  memset(feet, 0, sizeof *feet);
+}

@@ -1,0 +1,37 @@
+/* Feet: where sites near the surface would stand on it.  Found once for each site, when first needed. */
+#ifndef LAVES_SNAP_FEET_H
+#define LAVES_SNAP_FEET_H
+
+#include "background/lattice.h"
+
+typedef struct laves__foot {
+  laves__vec3 position;
+  float normal[3]; /* of the surface, outwards */
+  uint32_t hint;
+  uint8_t state; /* LAVES__FOOT_... */
+} laves__foot;
+
+enum { LAVES__FOOT_UNKNOWN, LAVES__FOOT_FOUND, LAVES__FOOT_NONE };
+
+/* Blocks of one foot for each site, for the records that need any. */
+typedef struct laves__feet {
+  laves_context *context;
+  int32_t *block_of; /* [record_count] block of a record, or -1 */
+  size_t record_count;
+  laves__foot (*block)[LAVES__C15_SITES];
+  size_t block_count, block_capacity;
+} laves__feet;
+
+/* Finds the feet of the sites in `wanted` (a bit for each site, [lattice->record_count]) that are not known yet, in
+ * parallel. Records may have been added since the last call. LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
+laves_result laves__feet_find(const laves__frame *frame, const laves__lattice *lattice, const uint32_t *wanted, laves__feet *feet,
+                              laves_error *error);
+/* A foot that was asked for and found, else NULL. */
+const laves__foot *laves__feet_get(const laves__feet *feet, int32_t record, int site);
+void laves__feet_free(laves__feet *feet);
+
+/* The search for one foot: the nearest point of the surface or, where that can't be found, the nearest crossing of the
+ * site's own edges. False when neither exists. */
+bool laves__site_foot(const laves__frame *frame, const laves__lattice *lattice, int32_t record, int site, laves__foot *foot);
+
+#endif

@@ -1,0 +1,154 @@
+/* Thin walls: edges that cross the surface twice.
+ *
+ *      OUT ------ | material | ------ OUT        an edge with the same sign at both ends that passes through a wall
+ *
+ * (The mirror image, inner sites on both sides of a gap, is left alone: opening gaps narrower than the size also cuts
+ * tunnels under folds.)
+ *
+ * The cover of crossing edges can't see them, and the wall would be lost. Both ends of such an edge go ON, so that the wall
+ * is meshed by tets whose four corners lie on the surface.
+ *
+ * To find them without looking at every edge: along an edge that does not meet such a place phi is nearly linear. A site is
+ * suspected when the values of its neighbours do not fit a plane; an edge between two suspects whose outward directions
+ * oppose one another is looked at, at three places. */
+#include <string.h>
+
+#include "snap/snap.h"
+
+enum { ROUNDS = 4, SAMPLES = 3 };
+static const double misfit_min = 0.12; /* root mean square deviation from a plane, sizes; a sphere of radius 3 has 0.1 */
+static const double reach = 1.2;       /* sizes from the surface within which an end must lie */
+static const double opposed = -0.2;    /* cosine between the outward directions at the ends */
+static const double depth_min = 0.05;  /* sizes: how deep a sample must lie on the other side */
+
+typedef struct thinning {
+  const laves__frame *frame;
+  laves__lattice *lattice;
+  laves__feet *feet;
+  uint32_t *suspects; /* [record_count] bit for each site */
+  uint32_t *turns_on; /* [record_count] sites that go ON after this round */
+} thinning;
+
+/* Whether phi around a site is far from linear. The star of a site is nearly isotropic, so the slope is a weighted sum. */
+static bool is_suspect(const laves__lattice *lattice, const laves__record *r, int site) {
+  if (!isfinite(r->phi[site])) return false;
+  laves__vec3 at[LAVES__C15_MAX_DEGREE], slope = {0, 0, 0};
+  double rise[LAVES__C15_MAX_DEGREE], square = 0;
+  int count = 0;
+  const laves__vec3 p = laves__site_position(r->xyz, site);
+  for (int k = 0; k < laves__c15_degree[site]; k++) {
+    const laves__site s = laves__neighbour(r, site, k);
+    if (s.cell < 0 || !isfinite(lattice->record[s.cell].phi[s.site])) continue;
+    at[count] = v3_sub(laves__site_position(lattice->record[s.cell].xyz, s.site), p);
+    rise[count] = lattice->record[s.cell].phi[s.site] - r->phi[site];
+    slope = v3_mad(slope, at[count], rise[count]);
+    square += v3_norm2(at[count]);
+    count++;
+  }
+  if (count < 6) return true; /* half of its star is far away: too little to tell */
+  slope = v3_scale(slope, 3 / square);
+  double misfit = 0;
+  for (int k = 0; k < count; k++) {
+    const double d = rise[k] - v3_dot(slope, at[k]);
+    misfit += d * d;
+  }
+  const double steep = v3_norm2(slope);
+  return misfit > misfit_min * misfit_min * count * steep;
+}
+
+static void find_suspects(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const thinning *t = user;
+  for (size_t i = begin; i < end; i++) {
+    uint32_t mask = 0;
+    for (int site = 0; site < LAVES__C15_SITES; site++)
+      if (is_suspect(t->lattice, &t->lattice->record[i], site)) mask |= UINT32_C(1) << site;
+    t->suspects[i] = mask;
+  }
+}
+
+/* The end of an edge: its foot when ON, else the site. Outwards is away from the solid, or from the foot of an inner site
+ * towards it. False when the site has no foot near. */
+static bool end_of_edge(const thinning *t, int32_t record, int site, laves__vec3 *end, laves__vec3 *outwards) {
+  const laves__foot *foot = laves__feet_get(t->feet, record, site);
+  if (!foot) return false;
+  const laves__record *r = &t->lattice->record[record];
+  const laves__vec3 p = laves__site_position(r->xyz, site);
+  if (!(v3_distance(p, foot->position) < reach)) return false;
+  *end = r->label[site] == LAVES__LABEL_ON ? foot->position : p;
+  *outwards = v3(foot->normal[0], foot->normal[1], foot->normal[2]);
+  return true;
+}
+
+/* Whether an edge passes through a wall: see the drawing. */
+static bool passes_through(const thinning *t, const laves__record *r, int site, int32_t record, laves__site other) {
+  const laves__label a = (laves__label)r->label[site], b = laves__site_label(t->lattice, other);
+  if (a == LAVES__LABEL_ON && b == LAVES__LABEL_ON) return false;
+  if (r->sign[site] != laves__site_sign(t->lattice, other)) return false;
+  if (a != LAVES__LABEL_OUT && b != LAVES__LABEL_OUT) return false;
+  laves__vec3 from, to, n_from, n_to;
+  if (!end_of_edge(t, record, site, &from, &n_from) || !end_of_edge(t, other.cell, other.site, &to, &n_to)) return false;
+  if (v3_dot(n_from, n_to) > opposed) return false;
+  laves__vec3 points[SAMPLES];
+  double phi[SAMPLES];
+  for (int i = 0; i < SAMPLES; i++) points[i] = v3_lerp(from, to, (i + 1.0) / (SAMPLES + 1));
+  laves__frame_evaluate(t->frame, SAMPLES, points, phi, NULL);
+  const double depth = t->frame->oracle->is_distance ? depth_min : 0; /* elsewhere phi has no unit */
+  for (int i = 0; i < SAMPLES; i++)
+    if (phi[i] < -depth) return true;
+  return false;
+}
+
+/* Reads labels only; what changes goes to turns_on of the site's own record. Both ends look at the edge, each for itself. */
+static void look_at_edges(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const thinning *t = user;
+  for (size_t i = begin; i < end; i++) {
+    const laves__record *r = &t->lattice->record[i];
+    t->turns_on[i] = 0;
+    for (uint32_t mask = t->suspects[i]; mask; mask &= mask - 1) {
+      const int site = __builtin_ctz(mask);
+      for (int k = 0; k < laves__c15_degree[site] && r->label[site] != LAVES__LABEL_ON; k++) {
+        const laves__site s = laves__neighbour(r, site, k);
+        if (s.cell < 0 || !(t->suspects[s.cell] >> s.site & 1) || !passes_through(t, r, site, (int32_t)i, s)) continue;
+        t->turns_on[i] |= UINT32_C(1) << site;
+        break;
+      }
+    }
+  }
+}
+
+static bool turn_on(const thinning *t) {
+  bool any = false;
+  for (size_t i = 0; i < t->lattice->record_count; i++)
+    for (uint32_t mask = t->turns_on[i]; mask; mask &= mask - 1) {
+      t->lattice->record[i].label[__builtin_ctz(mask)] = LAVES__LABEL_ON;
+      t->lattice->record[i].forced |= mask & -mask;
+      any = true;
+    }
+  return any;
+}
+
+laves_result laves__thin_cover(const laves__frame *frame, laves__lattice *lattice, laves__feet *feet, laves_error *error) {
+  laves_context *context = lattice->context;
+  const size_t records = lattice->record_count;
+  laves_result result = LAVES_OK;
+  thinning t = {frame, lattice, feet, laves__alloc(context, records, sizeof *t.suspects),
+                laves__alloc(context, records, sizeof *t.turns_on)};
+  if (!t.suspects || !t.turns_on) {
+    result = laves__fail_memory(context, error);
+    goto cleanup;
+  }
+  if (!laves__parallel_for(context, "snap", records, 16, find_suspects, &t)) result = laves__fail_cancelled(error);
+  if (result == LAVES_OK) result = laves__feet_find(frame, lattice, t.suspects, feet, error);
+  for (int round = 0; result == LAVES_OK && round < ROUNDS; round++) {
+    if (!laves__parallel_for(context, "snap", records, 16, look_at_edges, &t))
+      result = laves__fail_cancelled(error);
+    else if (!turn_on(&t))
+      break;
+  }
+cleanup:
+  laves__free(context, t.turns_on, records, sizeof *t.turns_on);
+  laves__free(context, t.suspects, records, sizeof *t.suspects);
+  return result;
+}

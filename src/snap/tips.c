@@ -1,0 +1,135 @@
+/* Tips and ridges: parts of the solid that stick out beyond the last sites inside, between the edges.
+ *
+ *            foot of b
+ *              /|\            b is outside; the feet of three ON sites around it and its own make a tet
+ *             / | \           that lies inside the solid and is not flat: the surface bends away there,
+ *   b .      /  |  \          and the mesh would end at the three. So b goes ON, and the search goes on
+ *        ON ----------- ON     from it.
+ *
+ * On a surface that is resolved the foot of b lies between the three, the tet is flat, and nothing happens. */
+#include "mesh/mesh.h"
+#include "snap/snap.h"
+
+enum { ROUNDS = 8, NEIGHBOURS_MIN = 3 };
+static const double reach = 0.8;        /* sizes: how far the foot may be from the site */
+static const double advance_min = 0.45; /* sizes: how far it must lie from each of the three feet */
+static const double height_min = 0.45;  /* sizes: how high it must stand over them */
+static const double depth_min = 0.03;   /* sizes: how deep the middle of the tet must lie */
+
+typedef struct tips {
+  const laves__frame *frame;
+  laves__lattice *lattice;
+  laves__feet *feet;
+  uint32_t *wanted; /* [record_count] sites to look at */
+  uint32_t *fresh;  /* [record_count] sites that went ON in the last round */
+  bool first_round;
+} tips;
+
+/* Whether an outside site has enough neighbours ON, one of them fresh after the first round. */
+static bool is_candidate(const tips *t, const laves__record *r, int site) {
+  if (r->label[site] != LAVES__LABEL_OUT || r->sign[site] < 0) return false;
+  if (t->frame->oracle->is_distance && !(r->phi[site] < reach)) return false;
+  int on = 0;
+  bool fresh = t->first_round;
+  for (int k = 0; k < laves__c15_degree[site]; k++) {
+    const laves__site s = laves__neighbour(r, site, k);
+    if (s.cell < 0 || laves__site_label(t->lattice, s) != LAVES__LABEL_ON) continue;
+    on++;
+    fresh |= t->fresh[s.cell] >> s.site & 1;
+  }
+  return on >= NEIGHBOURS_MIN && fresh;
+}
+
+static void find_candidates(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const tips *t = user;
+  for (size_t i = begin; i < end; i++) {
+    t->wanted[i] = 0;
+    for (int site = 0; site < LAVES__C15_SITES; site++)
+      if (is_candidate(t, &t->lattice->record[i], site)) t->wanted[i] |= UINT32_C(1) << site;
+  }
+}
+
+/* The height of a corner over the opposite face. */
+static double apex_height(const laves__vec3 p[4], int corner) {
+  const uint8_t *f = laves__tet_face[corner];
+  return v3_det(p[0], p[1], p[2], p[3]) / v3_norm(v3_cross(v3_sub(p[f[1]], p[f[0]]), v3_sub(p[f[2]], p[f[0]])));
+}
+
+/* Whether the tet of a star, with the other three corners ON at their feet, reaches further into the solid. */
+static bool tet_reaches(const tips *t, const laves__record *r, const laves__c15_star_tet *star, laves__vec3 foot) {
+  if (r->around[star->cell] < 0) return false;
+  laves__site corner[4];
+  laves__tet_sites(&t->lattice->record[r->around[star->cell]], star->tet, corner);
+  laves__vec3 p[4];
+  for (int k = 0; k < 4; k++) {
+    p[k] = foot;
+    if (k == star->corner) continue;
+    if (corner[k].cell < 0 || laves__site_label(t->lattice, corner[k]) != LAVES__LABEL_ON) return false;
+    const laves__foot *other = laves__feet_get(t->feet, corner[k].cell, corner[k].site);
+    if (!other || v3_distance(other->position, foot) < advance_min) return false;
+    p[k] = other->position;
+  }
+  if (!laves__solid_shape(p) || apex_height(p, star->corner) < height_min) return false;
+  const laves__vec3 middle = v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25);
+  double phi;
+  laves__frame_evaluate(t->frame, 1, &middle, &phi, NULL);
+  return phi < (t->frame->oracle->is_distance ? -depth_min : 0); /* elsewhere phi has no unit */
+}
+
+/* Keeps of `wanted` only the sites that shall go ON. Reads labels, writes to the record's own place. */
+static void look_at_sites(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const tips *t = user;
+  for (size_t i = begin; i < end; i++) {
+    const laves__record *r = &t->lattice->record[i];
+    for (uint32_t mask = t->wanted[i]; mask; mask &= mask - 1) {
+      const int site = __builtin_ctz(mask);
+      const laves__foot *foot = laves__feet_get(t->feet, (int32_t)i, site);
+      bool reaches = false;
+      if (foot && v3_distance(foot->position, laves__site_position(r->xyz, site)) < reach)
+        for (int k = 0; k < laves__c15_star_size[site] && !reaches; k++)
+          reaches = tet_reaches(t, r, &laves__c15_star[site][k], foot->position);
+      if (!reaches) t->wanted[i] &= ~(mask & -mask);
+    }
+  }
+}
+
+static bool turn_on(const tips *t) {
+  bool any = false;
+  for (size_t i = 0; i < t->lattice->record_count; i++) {
+    t->fresh[i] = t->wanted[i];
+    t->lattice->record[i].forced |= t->wanted[i];
+    for (uint32_t mask = t->wanted[i]; mask; mask &= mask - 1) {
+      t->lattice->record[i].label[__builtin_ctz(mask)] = LAVES__LABEL_ON;
+      any = true;
+    }
+  }
+  return any;
+}
+
+laves_result laves__tip_cover(const laves__frame *frame, laves__lattice *lattice, laves__feet *feet, laves_error *error) {
+  laves_context *context = lattice->context;
+  const size_t records = lattice->record_count;
+  laves_result result = LAVES_OK;
+  tips t = {frame,
+            lattice,
+            feet,
+            laves__alloc(context, records, sizeof *t.wanted),
+            laves__alloc_zeroed(context, records, sizeof *t.fresh),
+            true};
+  if (!t.wanted || !t.fresh) result = laves__fail_memory(context, error);
+  for (int round = 0; result == LAVES_OK && round < ROUNDS; round++) {
+    if (!laves__parallel_for(context, "snap", records, 16, find_candidates, &t)) result = laves__fail_cancelled(error);
+    if (result == LAVES_OK) result = laves__feet_find(frame, lattice, t.wanted, feet, error);
+    if (result != LAVES_OK) break;
+    if (!laves__parallel_for(context, "snap", records, 16, look_at_sites, &t))
+      result = laves__fail_cancelled(error);
+    else if (!turn_on(&t))
+      break;
+    t.first_round = false;
+  }
+  laves__free(context, t.fresh, records, sizeof *t.fresh);
+  laves__free(context, t.wanted, records, sizeof *t.wanted);
+  return result;
+}
