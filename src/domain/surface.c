@@ -16,6 +16,9 @@ static const double diagonal_min = 1e-60, diagonal_max = 1e60;
 /* The caps of an open surface are as smooth as its winding number is right. */
 static const double far_factor_of_caps = 3;
 
+/* Walls that are less than one in so many faces are few. */
+static const size_t few_walls = 1000;
+
 /* Share of the box that an open surface must enclose to be taken for that of a solid. */
 static const double enclosed_min = 1e-3;
 
@@ -168,8 +171,20 @@ clean_up:
   return done;
 }
 
-/* Parts that stand inside out by themselves are turned; then the winding number is that of a new surface. */
-static bool turn_inverted(laves__surface *s, const bool *inverted, laves_domain_info *info) {
+/* Many walls are worth a new tree; a few are left where they are, as faces no part of which will be found to count. */
+static bool part_with_walls(laves__surface *s, const bool *keep, laves__crossings *c, const laves_domain_info *info) {
+  size_t walls = 0;
+  for (size_t f = 0; f < s->face_count; f++) walls += !keep[f];
+  if (walls == s->face_count) return true;
+  if (walls * few_walls > s->face_count) return leave_out(s, keep, c) && renew_topology(s, info);
+  for (size_t f = 0; f < s->face_count; f++)
+    if (!keep[f]) s->face_flags[f] = LAVES__PARTIAL;
+  return true;
+}
+
+/* Parts that stand inside out by themselves are turned; then the winding number is that of a new surface, and walls are
+ * looked for again. */
+static bool turn_inverted(laves__surface *s, bool *inverted, bool *keep, laves_domain_info *info) {
   bool any = false;
   for (uint32_t f = 0; f < s->face_count; f++) {
     if (!inverted[f]) continue;
@@ -179,7 +194,8 @@ static bool turn_inverted(laves__surface *s, const bool *inverted, laves_domain_
   if (!any) return true;
   info->turned = true;
   laves__winding_free(s->context, &s->winding);
-  return renew_topology(s, info) && laves__winding_build(s->context, &s->bvh, &s->winding);
+  return renew_topology(s, info) && laves__winding_build(s->context, &s->bvh, &s->winding) &&
+         laves__surface_find_walls(s, keep, inverted);
 }
 
 /* Closed, but in several parts, crossing itself or not manifold: the union of what it encloses. */
@@ -192,10 +208,8 @@ static bool solve_union(laves__surface *s, laves__crossings *c, laves_domain_inf
   mark_partial(s, c);
   if (!keep || !inverted || !laves__winding_build(s->context, &s->bvh, &s->winding)) goto clean_up;
   if (!laves__surface_find_walls(s, keep, inverted)) goto clean_up;
-  if (!turn_inverted(s, inverted, info) || !laves__surface_find_walls(s, keep, inverted)) goto clean_up;
-  size_t kept = 0;
-  for (size_t f = 0; f < count; f++) kept += keep[f];
-  if (kept > 0 && kept < count && (!leave_out(s, keep, c) || !renew_topology(s, info))) goto clean_up;
+  if (!turn_inverted(s, inverted, keep, info)) goto clean_up;
+  if (!part_with_walls(s, keep, c, info)) goto clean_up;
   mark_doubtful(s);
   if (!laves__surface_find_segments(s, c)) goto clean_up;
   laves__surface_measure(s, &info->volume, &info->area);
@@ -230,9 +244,7 @@ static bool solve_open(laves__surface *s, laves__crossings *c, laves_domain_info
   mark_partial(s, c);
   if (!keep || !laves__winding_build(s->context, &s->bvh, &s->winding) || !laves__surface_build_rim(s)) goto clean_up;
   if (!laves__surface_judge_open(s, keep)) goto clean_up;
-  size_t kept = 0;
-  for (size_t f = 0; f < count; f++) kept += keep[f];
-  if (kept > 0 && kept < count && (!leave_out(s, keep, c) || !renew_topology(s, info))) goto clean_up;
+  if (!part_with_walls(s, keep, c, info)) goto clean_up;
   mark_doubtful(s);
   s->winding.far_factor = far_factor_of_caps;
   done = laves__surface_find_segments(s, c);

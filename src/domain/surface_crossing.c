@@ -139,8 +139,8 @@ typedef struct finder {
 
 typedef struct question {
   finder *f;
-  uint32_t slot;
-  laves__box3 box;
+  uint32_t first, last; /* the triangles that ask */
+  laves__box3 box[LAVES__LEAF_MAX];
   int worker;
 } question;
 
@@ -154,25 +154,41 @@ static laves__box3 face_box(const laves__surface *s, uint32_t slot) {
   return (laves__box3){v3_min(t->a, v3_min(t->b, t->c)), v3_max(t->a, v3_max(t->b, t->c))};
 }
 
-static void ask(void *user, uint32_t slot) {
-  question *q = user;
-  const laves__surface *s = q->f->s;
-  if (slot <= q->slot || boxes_apart(q->box, face_box(s, slot)) || !faces_meet(s, q->slot, slot)) return;
+static void add_pair(const question *q, uint32_t a, uint32_t b) {
   laves__crossings *c = &q->f->found[q->worker];
-  if (!laves__grow(s->context, &c->pairs, &c->capacity, c->count + 1, sizeof *c->pairs)) {
+  if (!laves__grow(q->f->s->context, &c->pairs, &c->capacity, c->count + 1, sizeof *c->pairs)) {
     q->f->short_of_memory[q->worker] = true;
     return;
   }
-  c->pairs[c->count][0] = q->slot;
-  c->pairs[c->count++][1] = slot;
+  c->pairs[c->count][0] = a;
+  c->pairs[c->count++][1] = b;
 }
 
+static void ask(void *user, uint32_t slot) {
+  const question *q = user;
+  const laves__surface *s = q->f->s;
+  if (slot <= q->first) return;
+  const laves__box3 box = face_box(s, slot);
+  for (uint32_t mine = q->first; mine <= q->last && mine < slot; mine++)
+    if (!boxes_apart(q->box[mine - q->first], box) && faces_meet(s, mine, slot)) add_pair(q, mine, slot);
+}
+
+/* The leaves of a range of nodes; all triangles of a leaf ask together. */
 static void find_in_range(void *user, size_t begin, size_t end, int worker) {
   finder *f = user;
-  for (size_t slot = begin; slot < end; slot++) {
-    question q = {f, (uint32_t)slot, face_box(f->s, (uint32_t)slot), worker};
-    laves__bvh_overlaps(&f->s->bvh, q.box, ask, &q);
-  }
+  const laves__bvh *bvh = &f->s->bvh;
+  for (size_t k = begin; k < end; k++)
+    for (int i = 0; i < 4; i++) {
+      const uint32_t child = bvh->nodes[k].child[i];
+      if (!(child & LAVES__LEAF_BIT) || !laves__bvh_is_used(&bvh->nodes[k], i)) continue;
+      question q = {.f = f, .first = laves__leaf_first(child), .last = laves__leaf_last(child), .worker = worker};
+      laves__box3 whole = box3_empty();
+      for (uint32_t slot = q.first; slot <= q.last; slot++) {
+        const laves__box3 b = q.box[slot - q.first] = face_box(f->s, slot);
+        whole = box3_add(box3_add(whole, b.lower), b.upper);
+      }
+      laves__bvh_overlaps(bvh, whole, ask, &q);
+    }
 }
 
 static int compare_pairs(const void *a, const void *b) {
@@ -204,7 +220,7 @@ bool laves__surface_crossings(const laves__surface *s, laves__crossings *all) {
   bool done = found && short_of_memory;
   if (done) {
     finder f = {s, found, short_of_memory};
-    done = laves__parallel_for(context, "surface", s->face_count, 256, find_in_range, &f);
+    done = laves__parallel_for(context, "surface", s->bvh.node_count, 64, find_in_range, &f);
     for (int w = 0; w < workers; w++) done = done && !short_of_memory[w];
     done = done && gather(context, found, workers, all);
   }
