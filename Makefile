@@ -31,6 +31,7 @@ check:
 	@ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
 
 bench: all
+	@tools/setup bench
 	@cmake --build $(BUILD) --parallel $(JOBS) --target laves-measure
 	@bench/run $(BUILD)/laves --readme
 
