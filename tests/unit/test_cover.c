@@ -72,13 +72,12 @@ static void moves_are_short(void **state) {
   for (size_t i = 0; i < s.lattice.record_count; i++)
     for (int site = 0; site < LAVES__C15_SITES; site++) {
       if (s.lattice.record[i].label[site] != LAVES__LABEL_ON) continue;
-      laves__vec3 foot, normal;
-      uint32_t hint;
+      laves__foot foot;
       double phi;
-      assert_true(laves__site_foot(&s.frame, &s.lattice, (int32_t)i, site, &hint, &foot, &normal));
-      laves__frame_evaluate(&s.frame, 1, &foot, &phi, NULL);
+      assert_true(laves__site_foot(&s.frame, &s.lattice, (int32_t)i, site, &foot));
+      laves__frame_evaluate(&s.frame, 1, &foot.position, &phi, NULL);
       assert_true(fabs(phi) < 1e-9);
-      furthest = fmax(furthest, v3_distance(foot, laves__site_position(s.lattice.record[i].xyz, site)));
+      furthest = fmax(furthest, v3_distance(foot.position, laves__site_position(s.lattice.record[i].xyz, site)));
     }
   assert_true(furthest > 0.3 && furthest < 0.65);
   stages_end(&s);

@@ -110,7 +110,7 @@ static void walls_and_edges_are_warned_of(void **state) {
   laves_context *context = laves_context_create(NULL);
   laves_options options = options_of_size(0.11);
   laves_report report;
-  laves_mesh *mesh = mesh_of_expression(context, "sphere(1) - sphere(0.89)", &options, &report);
+  laves_mesh *mesh = mesh_of_expression(context, "sphere(1) - sphere(0.94)", &options, &report);
   assert_true(report.pinches > 0);
   assert_true(report.warning_count > 0);
   assert_non_null(strstr(report.warnings[0], "thinner than the size"));
