@@ -96,6 +96,13 @@ static laves_result snap(run *r) {
   return result;
 }
 
+static laves_result nothing_resolved(const run *r) {
+  return laves__fail(
+      r->error, LAVES_ERROR_INPUT,
+      "nothing of the solid is resolved at size %g (the box around it has a diagonal of %g); choose a smaller size",
+      r->frame.size, box3_diagonal(r->domain->oracle.bounds));
+}
+
 /* Background to snap; repeated with a corrected size when a count was asked for and missed. */
 static laves_result make_boundary(run *r) {
   enum { CORRECTIONS = 4 };
@@ -107,13 +114,7 @@ static laves_result make_boundary(run *r) {
     int64_t vertices, tets;
     laves__assemble_estimate(&r->lattice, &r->layer, &vertices, &tets);
     const double factor = laves__options_correction(r->options, tets, vertices);
-    if (tets == 0) {
-      const double diagonal = box3_diagonal(r->domain->oracle.bounds);
-      return laves__fail(
-          r->error, LAVES_ERROR_INPUT,
-          "nothing of the solid is resolved at size %g (the box around it has a diagonal of %g); choose a smaller size",
-          r->frame.size, diagonal);
-    }
+    if (tets == 0) return nothing_resolved(r);
     if (factor == 1 || correction == CORRECTIONS) return LAVES_OK;
     r->frame.size *= factor;
   }
@@ -143,6 +144,7 @@ static laves_result name_groups(const run *r, laves_mesh *mesh) {
 static laves_result make_mesh(run *r, laves_mesh **mesh) {
   begin_stage(r);
   laves_result result = laves__assemble(&r->frame, &r->lattice, &r->layer, mesh, r->error);
+  if (result == LAVES_OK && (*mesh)->tet_count == 0) result = nothing_resolved(r); /* slivers, all contracted away */
   if (result == LAVES_OK) result = name_groups(r, *mesh);
   end_stage(r, "mesh");
   return result;

@@ -92,7 +92,7 @@ static bool mesh_solid(laves_context *context, const char *text, uint64_t seed, 
 
 static void combined_primitives(void **state) {
   (void)state;
-  enum { RUNS = 24 };
+  enum { RUNS = 14 };
   laves_context *context = laves_context_create(NULL);
   int meshed = 0;
   for (uint64_t run = 1; run <= RUNS; run++) {
@@ -108,7 +108,7 @@ static void combined_primitives(void **state) {
 /* Random polynomials and waves within a ball: nothing like a distance. */
 static void random_formulas(void **state) {
   (void)state;
-  enum { RUNS = 16 };
+  enum { RUNS = 12 };
   laves_context *context = laves_context_create(NULL);
   int meshed = 0;
   for (uint64_t run = 101; run <= 100 + RUNS; run++) {
