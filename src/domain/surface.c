@@ -171,12 +171,12 @@ clean_up:
   return done;
 }
 
-/* Many walls are worth a new tree; a few are left where they are, as faces no part of which will be found to count. */
+/* Many walls are worth a new tree; a few (or all, which leave nothing) stay where they are, as faces no part of which will be
+ * found to count. */
 static bool part_with_walls(laves__surface *s, const bool *keep, laves__crossings *c, const laves_domain_info *info) {
   size_t walls = 0;
   for (size_t f = 0; f < s->face_count; f++) walls += !keep[f];
-  if (walls == s->face_count) return true;
-  if (walls * few_walls > s->face_count) return leave_out(s, keep, c) && renew_topology(s, info);
+  if (walls < s->face_count && walls * few_walls > s->face_count) return leave_out(s, keep, c) && renew_topology(s, info);
   for (size_t f = 0; f < s->face_count; f++)
     if (!keep[f]) s->face_flags[f] = LAVES__PARTIAL;
   return true;
@@ -262,8 +262,10 @@ static double central_volume(const laves__surface *s) {
   return volume6 / 6;
 }
 
-/* Most edges unmatched: unconnected triangles, whose winding number means nothing. Or no inside at all: a sheet. */
-static bool encloses_nothing(const laves__surface *s) {
+/* Most edges unmatched: unconnected triangles, whose winding number means nothing. Or no inside at all: a sheet, or a closed
+ * surface that is flat. */
+static bool encloses_nothing(const laves__surface *s, const laves_domain_info *info) {
+  if (!s->open) return !(info->volume > 0);
   return s->rim_tree.count > 3 * s->all_face_count / 2 ||
          laves__surface_inside_share(s, box_of(s->points, s->point_count)) < enclosed_min;
 }
@@ -372,7 +374,7 @@ laves_result laves__surface_build(laves_context *context, laves__surface_input *
     result = laves__fail_memory(context, error);
     goto clean_up;
   }
-  if (s->open && encloses_nothing(s)) {
+  if (encloses_nothing(s, &domain->info)) {
     const laves_domain_info *info = &domain->info;
     result =
         laves__fail(error, LAVES_ERROR_INPUT,

@@ -299,7 +299,9 @@ static inline laves__vec3 closest(const laves__triangle *t, laves__vec3 p, int *
     return v3_add(t->a, v3_add(v3_scale(v3_sub(t->b, t->a), v), v3_scale(v3_sub(t->c, t->a), w)));
   }
   const laves__vec3 *corners[4] = {&t->a, &t->b, &t->c, &t->a};
+  /* What holds for a point so far away that squares overflow. */
   laves__vec3 best = t->a;
+  *on = LAVES__ON_CORNER;
   double least = INFINITY;
   for (int i = 0; i < 3; i++) {
     if (!beyond[i]) continue;

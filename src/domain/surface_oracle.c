@@ -32,11 +32,10 @@ static laves__nearest nearest_from(const laves__surface *s, laves__vec3 p, doubl
   return best;
 }
 
-/* Outside so far away that floats cannot tell triangles apart any triangle will do. */
-static laves__nearest nearest(const laves__surface *s, laves__vec3 p, uint32_t start) {
-  const laves__nearest best = nearest_from(s, p, INFINITY, start);
-  if (best.slot != LAVES__NONE) return best;
-  return (laves__nearest){laves__triangle_distance2(&s->bvh.triangles[0], p), 0};
+/* Distance to a surface so far away that floats cannot tell its triangles apart, nor squares be formed. */
+static double far_distance(laves__vec3 p) {
+  const double most = fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
+  return most * v3_norm(v3_scale(p, 1 / most));
 }
 
 /* ---- where the winding number decides ---- */
@@ -183,8 +182,8 @@ static void evaluate(const void *self, size_t count, const laves__vec3 *points, 
   const laves__surface *s = self;
   uint32_t start = LAVES__NO_HINT;
   for (size_t i = 0; i < count; i++) {
-    const laves__nearest n = nearest(s, points[i], start);
-    phi[i] = signed_distance(s, points[i], &n);
+    const laves__nearest n = nearest_from(s, points[i], INFINITY, start);
+    phi[i] = n.slot == LAVES__NONE ? far_distance(points[i]) : signed_distance(s, points[i], &n);
     start = n.slot;
     if (hints) hints[i] = n.slot;
   }

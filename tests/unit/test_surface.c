@@ -254,6 +254,21 @@ static void frames_do_not_matter(void **unused) {
   laves_context_free(context);
 }
 
+/* So far away that squares of distances overflow there is still an outside. */
+static void far_points_are_outside(void **unused) {
+  (void)unused;
+  laves_context *context = laves_context_create(NULL);
+  shape s = shape_sphere(1, 3);
+  laves_domain *domain = build(context, &s);
+  const double points[9] = {1e30, 0, 0, 0, -1e100, 0, 1e200, 1e200, 1e200};
+  double phi[3];
+  laves_domain_evaluate(domain, points, 3, phi);
+  assert_true(fabs(phi[0] / 1e30 - 1) < 1e-9 && fabs(phi[1] / 1e100 - 1) < 1e-9 && phi[2] > 1e150);
+  laves_domain_free(domain);
+  shape_free(&s);
+  laves_context_free(context);
+}
+
 static void inside_out_is_turned(void **unused) {
   (void)unused;
   laves_context *context = laves_context_create(NULL);
@@ -320,7 +335,7 @@ int main(void) {
       cmocka_unit_test(hints_never_change_answers), cmocka_unit_test(projects_within_reach_only),
       cmocka_unit_test(sides_are_certain),          cmocka_unit_test(frames_do_not_matter),
       cmocka_unit_test(inside_out_is_turned),       cmocka_unit_test(counts_facts),
-      cmocka_unit_test(refuses_what_is_no_surface),
+      cmocka_unit_test(far_points_are_outside),     cmocka_unit_test(refuses_what_is_no_surface),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

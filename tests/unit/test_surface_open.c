@@ -193,6 +193,10 @@ static void what_encloses_nothing_is_refused(void **unused) {
   const uint32_t sheet[6] = {0, 1, 2, 0, 2, 3};
   assert_int_equal(laves_domain_from_triangles(context, square, 4, sheet, 2, NULL, &domain, &error), LAVES_ERROR_INPUT);
   assert_non_null(strstr(error.text, "encloses no volume"));
+  /* Closed, but a sheet with a front and a back. */
+  const uint32_t twofold[12] = {0, 1, 2, 0, 2, 3, 0, 2, 1, 0, 3, 2};
+  assert_int_equal(laves_domain_from_triangles(context, square, 4, twofold, 4, NULL, &domain, &error), LAVES_ERROR_INPUT);
+  assert_non_null(strstr(error.text, "encloses no volume"));
   assert_int_equal(laves_context_bytes(context), 0);
   laves_context_free(context);
 }
