@@ -108,13 +108,15 @@ static void walls_and_edges_are_warned_of(void **state) {
   (void)state;
   laves_context *context = laves_context_create(NULL);
   laves_options options = options_of_size(0.11);
+  options.improve = false;
   laves_report report;
   laves_mesh *mesh = mesh_of_expression(context, "sphere(1) - sphere(0.94)", &options, &report);
   assert_true(report.pinches > 0);
   assert_true(report.warning_count > 0);
   assert_non_null(strstr(report.warnings[0], "thinner than the size"));
   laves_mesh_free(mesh);
-  options.min_dihedral = 60;
+  options = options_of_size(0.3);
+  options.min_dihedral = 55;
   mesh = mesh_of_expression(context, "box(1)", &options, &report);
   assert_true(report.outside_window > 0);
   assert_non_null(strstr(report.warnings[report.warning_count - 1], "outside the asked window"));
