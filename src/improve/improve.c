@@ -48,6 +48,7 @@ typedef struct work {
   double progress; /* share of the first bad tets that are cured, for the caller's eyes */
   size_t first_count;
   uint8_t *tries;   /* [tet_count] full treatments so far, at most TRIES_MAX */
+  double *stuck;    /* [tet_count] surroundings in which smoothing ended */
   double *given_up; /* [tet_count] surroundings in which the last full treatment failed */
   double admit;     /* tets below this quality are worked on */
   int rounds;       /* of smoothing around a contraction; 0: smoothing only */
@@ -113,12 +114,16 @@ static double surroundings(const laves__layer *layer, int32_t t) {
   return sum;
 }
 
-/* A tet that withstood everything is left alone until something around it changes. */
+/* A tet that withstood a treatment does not get it again until something around it changes. */
 static void mend(work *w, int32_t t, laves__journal *journal) {
-  if (surroundings(w->layer, t) == w->given_up[t]) return;
-  for (int k = 0; k < 4 && is_bad(w, t); k++)
-    if (laves__layer_moves(w->layer, w->layer->tet[t][k]))
-      laves__smooth_vertex(w->frame, &w->measure, w->target, w->layer, w->layer->tet[t][k], NULL);
+  const double before = surroundings(w->layer, t);
+  if (before == w->given_up[t]) return;
+  if (before != w->stuck[t]) {
+    for (int k = 0; k < 4 && is_bad(w, t); k++)
+      if (laves__layer_moves(w->layer, w->layer->tet[t][k]))
+        laves__smooth_vertex(w->frame, &w->measure, w->target, w->layer, w->layer->tet[t][k], NULL);
+    w->stuck[t] = surroundings(w->layer, t);
+  }
   if (w->rounds == 0 || !is_bad(w, t) || w->tries[t] == TRIES_MAX) return;
   w->tries[t]++;
   if (!laves__contract_tet(w->frame, &w->measure, w->target, w->layer, t, w->rounds, journal))
@@ -194,12 +199,13 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   laves_result result = LAVES_OK;
   w.journal = laves__alloc_zeroed(context, (size_t)workers, sizeof *w.journal);
   w.given_up = laves__alloc(context, layer->tet_count, sizeof *w.given_up);
+  w.stuck = laves__alloc(context, layer->tet_count, sizeof *w.stuck);
   w.tries = laves__alloc_zeroed(context, layer->tet_count, 1);
-  if (!w.journal || !w.given_up || !w.tries) {
+  if (!w.journal || !w.given_up || !w.stuck || !w.tries) {
     result = laves__fail_memory(context, error);
     goto cleanup;
   }
-  for (size_t t = 0; t < layer->tet_count; t++) w.given_up[t] = HUGE_VAL;
+  for (size_t t = 0; t < layer->tet_count; t++) w.given_up[t] = w.stuck[t] = HUGE_VAL;
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
   if (!laves__parallel_for(context, NULL, layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
   if (result == LAVES_OK) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
@@ -220,6 +226,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
 cleanup:
   for (int i = 0; w.journal && i < workers; i++) laves__journal_free(&w.journal[i]);
   laves__free(context, w.tries, layer->tet_count, 1);
+  laves__free(context, w.stuck, layer->tet_count, sizeof *w.stuck);
   laves__free(context, w.given_up, layer->tet_count, sizeof *w.given_up);
   laves__free(context, w.journal, (size_t)workers, sizeof *w.journal);
   laves__free(context, w.item, w.capacity, sizeof *w.item);
