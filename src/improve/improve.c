@@ -14,7 +14,7 @@
 #include "improve/relax.h"
 #include "improve/smooth.h"
 
-enum { SWEEPS = 2, SMOOTH_PASSES = 5, CONTRACT_PASSES = 12, THOROUGH_ROUNDS = 3, TRIES_MAX = 6 };
+enum { SWEEPS = 2, SMOOTH_PASSES = 5, CONTRACT_PASSES = 12, THOROUGH_ROUNDS = 3, TRIES_MAX = 4 };
 static const double block_side = 15;       /* sizes; see above */
 static const double worthwhile = 0.02;     /* share of bad tets that a pass must cure to be followed by its like */
 static const double thorough_below = 0.96; /* quality below which the few that remain get more patience */

@@ -70,6 +70,16 @@ bool laves__site_foot(const laves__frame *frame, const laves__lattice *lattice, 
   return nearest_crossing(frame, lattice, r, site, foot);
 }
 
+bool laves__lies_inside(const laves__frame *frame, laves__vec3 point, double depth) {
+  double phi;
+  laves__frame_evaluate(frame, 1, &point, &phi, NULL);
+  if (!(phi < 0)) return false;
+  if (frame->oracle->is_distance) return phi < -depth;
+  uint32_t hint = LAVES__NO_HINT; /* phi has no unit: the foot tells */
+  laves__vec3 foot, normal;
+  return !laves__frame_project(frame, point, depth, &hint, &foot, &normal) || v3_distance(point, foot) > depth;
+}
+
 typedef struct search {
   const laves__frame *frame;
   const laves__lattice *lattice;

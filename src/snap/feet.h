@@ -34,4 +34,7 @@ void laves__feet_free(laves__feet *feet);
  * site's own edges. False when neither exists. */
 bool laves__site_foot(const laves__frame *frame, const laves__lattice *lattice, int32_t record, int site, laves__foot *foot);
 
+/* Whether a point lies inside, at least `depth` sizes from the surface. */
+bool laves__lies_inside(const laves__frame *frame, laves__vec3 point, double depth);
+
 #endif

@@ -47,7 +47,6 @@ bool laves__solid_shape(const laves__vec3 p[4]) {
 static void judge_records(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const search *s = user;
-  const bool is_distance = s->frame->oracle->is_distance; /* elsewhere phi has no unit */
   for (size_t i = begin; i < end; i++) {
     laves__record *r = &s->lattice->record[i];
     memset(r->solid, 0, sizeof r->solid);
@@ -64,9 +63,7 @@ static void judge_records(void *user, size_t begin, size_t end, int worker) {
       if (!all_on(s, r, tet, p, &forced) || !laves__solid_shape(p)) continue;
       laves__flip_bit(r->eligible, tet);
       const laves__vec3 middle = v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25);
-      double phi;
-      laves__frame_evaluate(s->frame, 1, &middle, &phi, NULL);
-      if (phi < (is_distance ? -(forced ? thin_depth_min : depth_min) : 0)) laves__flip_bit(r->solid, tet);
+      if (laves__lies_inside(s->frame, middle, forced ? thin_depth_min : depth_min)) laves__flip_bit(r->solid, tet);
     }
   }
 }

@@ -17,9 +17,9 @@
 
 enum { ROUNDS = 4, SAMPLES = 3 };
 static const double misfit_min = 0.3; /* root mean square deviation from a plane, sizes; a sphere of radius 3 has 0.1 */
-static const double reach = 1.2;       /* sizes from the surface within which an end must lie */
-static const double opposed = -0.2;    /* cosine between the outward directions at the ends */
-static const double depth_min = 0.15;  /* sizes: how deep a sample must lie on the other side */
+static const double reach = 1.2;      /* sizes from the surface within which an end must lie */
+static const double opposed = -0.2;   /* cosine between the outward directions at the ends */
+static const double depth_min = 0.15; /* sizes: how deep a sample must lie on the other side */
 
 typedef struct thinning {
   const laves__frame *frame;
@@ -89,13 +89,8 @@ static bool passes_through(const thinning *t, const laves__record *r, int site, 
   laves__vec3 from, to, n_from, n_to;
   if (!end_of_edge(t, record, site, &from, &n_from) || !end_of_edge(t, other.cell, other.site, &to, &n_to)) return false;
   if (v3_dot(n_from, n_to) > opposed) return false;
-  laves__vec3 points[SAMPLES];
-  double phi[SAMPLES];
-  for (int i = 0; i < SAMPLES; i++) points[i] = v3_lerp(from, to, (i + 1.0) / (SAMPLES + 1));
-  laves__frame_evaluate(t->frame, SAMPLES, points, phi, NULL);
-  const double depth = t->frame->oracle->is_distance ? depth_min : 0; /* elsewhere phi has no unit */
   for (int i = 0; i < SAMPLES; i++)
-    if (phi[i] < -depth) return true;
+    if (laves__lies_inside(t->frame, v3_lerp(from, to, (i + 1.0) / (SAMPLES + 1)), depth_min)) return true;
   return false;
 }
 

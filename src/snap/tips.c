@@ -72,9 +72,7 @@ static bool tet_reaches(const tips *t, const laves__record *r, const laves__c15_
   }
   if (!laves__solid_shape(p) || apex_height(p, star->corner) < height_min) return false;
   const laves__vec3 middle = v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25);
-  double phi;
-  laves__frame_evaluate(t->frame, 1, &middle, &phi, NULL);
-  return phi < (t->frame->oracle->is_distance ? -depth_min : 0); /* elsewhere phi has no unit */
+  return laves__lies_inside(t->frame, middle, depth_min);
 }
 
 /* Keeps of `wanted` only the sites that shall go ON. Reads labels, writes to the record's own place. */
