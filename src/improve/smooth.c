@@ -24,7 +24,7 @@ enum {
   WORKING_MAX = 24,   /* functions that share the weight; four suffice in theory */
   EXCHANGES_MAX = 60, /* of weight, for one dual problem */
 };
-static const double active_range = 0.5;   /* functions this far above the least take part */
+static const double active_range = 0.4;   /* functions this far above the least take part */
 static const double first_tau = 0.05;     /* size^2; typical steps are a tenth of the size */
 static const double longest_step = 0.5;   /* sizes */
 static const double surface_reach = 0.75; /* sizes: how far a trial point may be from the surface */
