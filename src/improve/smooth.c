@@ -19,7 +19,7 @@
 
 enum {
   TERMS_MAX = 640,    /* functions in a bundle; more are left out (a star of 50 tets has 650, and few are active) */
-  STEPS_MAX = 6,     /* accepted steps for one call */
+  STEPS_MAX = 6,      /* accepted steps for one call */
   TRIES_MAX = 4,      /* shrinks of tau for one step */
   WORKING_MAX = 24,   /* functions that share the weight; four suffice in theory */
   EXCHANGES_MAX = 60, /* of weight, for one dual problem */
