@@ -114,14 +114,23 @@ static double surroundings(const laves__layer *layer, int32_t t) {
   return sum;
 }
 
-/* A tet that withstood a treatment does not get it again until something around it changes. */
+/* Smooths the corners of a tet, either those on the surface or the inner ones, until it is good. */
+static void smooth_corners(const work *w, int32_t t, bool on_surface) {
+  for (int k = 0; k < 4 && is_bad(w, t); k++) {
+    const int32_t v = w->layer->tet[t][k];
+    if (laves__layer_moves(w->layer, v) && (w->layer->depth[v] == 0) == on_surface)
+      laves__smooth_vertex(w->frame, &w->measure, w->target, w->layer, v, NULL);
+  }
+}
+
+/* Inner corners first: they are free to move and need no projection; most tets need no more.
+ * A tet that withstood a treatment does not get it again until something around it changes. */
 static void mend(work *w, int32_t t, laves__journal *journal) {
   const double before = surroundings(w->layer, t);
   if (before == w->given_up[t]) return;
   if (before != w->stuck[t]) {
-    for (int k = 0; k < 4 && is_bad(w, t); k++)
-      if (laves__layer_moves(w->layer, w->layer->tet[t][k]))
-        laves__smooth_vertex(w->frame, &w->measure, w->target, w->layer, w->layer->tet[t][k], NULL);
+    smooth_corners(w, t, false);
+    smooth_corners(w, t, true);
     w->stuck[t] = surroundings(w->layer, t);
   }
   if (w->rounds == 0 || !is_bad(w, t) || w->tries[t] == TRIES_MAX) return;

@@ -28,7 +28,7 @@ static const double active_range = 0.4;   /* functions this far above the least 
 static const double first_tau = 0.05;     /* size^2; typical steps are a tenth of the size */
 static const double longest_step = 0.5;   /* sizes */
 static const double surface_reach = 0.75; /* sizes: how far a trial point may be from the surface */
-static const double least_gain = 0.003;   /* foretold gains below this are not worth a trial */
+static const double least_gain = 0.005;   /* foretold gains below this are not worth a trial */
 static const double accept_share = 0.1, good_share = 0.5, exact_enough = 0.02;
 
 typedef struct bundle {
