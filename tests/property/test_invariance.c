@@ -94,7 +94,7 @@ static void moved_solids_are_meshed_alike(void **state) {
 
 static laves_mesh *mesh_of_shape(laves_context *context, const shape *s, const laves_options *options) {
   laves_domain *domain;
-  laves_mesh *mesh;
+  laves_mesh *mesh = NULL;
   laves_error error;
   if (laves_domain_from_triangles(context, s->points, s->point_count, s->triangles, s->triangle_count, NULL, &domain, &error) !=
           LAVES_OK ||
