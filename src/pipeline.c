@@ -62,7 +62,8 @@ static void warn(run *r, const char *format, ...) {
 static laves_result choose_frame(run *r) {
   const laves__oracle *oracle = &r->domain->oracle;
   begin_stage(r);
-  r->report->volume = laves__domain_volume(oracle);
+  r->report->volume = laves__domain_volume(r->context, oracle);
+  if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
   r->frame.oracle = oracle;
   r->frame.centre = box3_centre(oracle->bounds);
   r->frame.rotation = laves__options_rotation(r->options, oracle);

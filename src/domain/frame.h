@@ -36,7 +36,8 @@ laves__side laves__frame_side(const laves__frame *frame, laves__vec3 centre, dou
 laves__mat3 laves__principal_axes(const laves__oracle *oracle);
 
 /* The volume of the solid: the oracle's where it knows it, else quasi-Monte Carlo in the cells of an octree that the
- * surface may cross (paper, section 4.2); relative error below about 0.5 % for compact solids. */
-double laves__domain_volume(const laves__oracle *oracle);
+ * surface may cross (paper, section 4.2); relative error below about 0.5 % for compact solids.
+ * Reports progress; after a cancel the result means nothing. */
+double laves__domain_volume(laves_context *context, const laves__oracle *oracle);
 
 #endif

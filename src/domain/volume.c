@@ -9,7 +9,7 @@
 enum {
   LEVELS = 5,          /* of the octree: 32 boxes along each axis at the end */
   DISTANCE_LEVELS = 6, /* where one value stands for a box */
-  LEAF_SAMPLES = 16,   /* in each undecided box */
+  LEAF_SAMPLES = 6,    /* in each undecided box; the sequence goes on from box to box */
   AXES_SAMPLES = 4096,
   CHUNK = 64,
 };
@@ -24,12 +24,19 @@ static laves__vec3 r3_point(const laves__box3 *box, size_t i) {
   return v3(box->lower.x + u.x * e.x, box->lower.y + u.y * e.y, box->lower.z + u.z * e.z);
 }
 
+typedef struct sampling {
+  laves_context *context;
+  const laves__oracle *oracle;
+  size_t next; /* of the sequence */
+} sampling;
+
 /* The share of a box that is inside, by samples. */
-static double sampled_share(const laves__oracle *oracle, const laves__box3 *box) {
+static double sampled_share(sampling *s, const laves__box3 *box) {
+  const laves__oracle *oracle = s->oracle;
   laves__vec3 points[LEAF_SAMPLES];
   double phi[LEAF_SAMPLES];
   int inside = 0;
-  for (int i = 0; i < LEAF_SAMPLES; i++) points[i] = r3_point(box, (size_t)i);
+  for (int i = 0; i < LEAF_SAMPLES; i++) points[i] = r3_point(box, s->next++);
   oracle->evaluate(oracle->self, LEAF_SAMPLES, points, phi, NULL);
   for (int i = 0; i < LEAF_SAMPLES; i++) inside += phi[i] < 0;
   return (double)inside / LEAF_SAMPLES;
@@ -45,7 +52,10 @@ static double balanced_share(const laves__oracle *oracle, laves__vec3 centre, do
   return (2 + 3 * t - t * t * t) / 4;
 }
 
-static double box_volume(const laves__oracle *oracle, laves__box3 box, int level) {
+/* After a cancel what is left counts as nothing; the caller asks whether there was one. */
+static double box_volume(sampling *s, laves__box3 box, int level) {
+  const laves__oracle *oracle = s->oracle;
+  if (laves__cancelled(s->context, "background", 0)) return 0;
   const laves__vec3 half = v3_scale(v3_sub(box.upper, box.lower), 0.5), centre = box3_centre(box);
   const double volume = 8 * half.x * half.y * half.z;
   switch (oracle->side(oracle->self, centre, v3_norm(half), half)) {
@@ -57,18 +67,19 @@ static double box_volume(const laves__oracle *oracle, laves__box3 box, int level
       break;
   }
   if (level == (oracle->is_distance ? DISTANCE_LEVELS : LEVELS))
-    return volume * (oracle->is_distance ? balanced_share(oracle, centre, volume) : sampled_share(oracle, &box));
+    return volume * (oracle->is_distance ? balanced_share(oracle, centre, volume) : sampled_share(s, &box));
   double sum = 0;
   for (int child = 0; child < 8; child++) {
     const laves__vec3 lower =
         v3(child & 1 ? centre.x : box.lower.x, child & 2 ? centre.y : box.lower.y, child & 4 ? centre.z : box.lower.z);
-    sum += box_volume(oracle, (laves__box3){lower, v3_add(lower, half)}, level + 1);
+    sum += box_volume(s, (laves__box3){lower, v3_add(lower, half)}, level + 1);
   }
   return sum;
 }
 
-double laves__domain_volume(const laves__oracle *oracle) {
-  return isfinite(oracle->volume) ? oracle->volume : box_volume(oracle, oracle->bounds, 0);
+double laves__domain_volume(laves_context *context, const laves__oracle *oracle) {
+  sampling s = {context, oracle, 0};
+  return isfinite(oracle->volume) ? oracle->volume : box_volume(&s, oracle->bounds, 0);
 }
 
 /* Eigenvectors of a symmetric matrix by cyclic Jacobi rotations; columns of `axes`, largest eigenvalue first. */
