@@ -30,8 +30,9 @@ typedef struct thinning {
 } thinning;
 
 /* Whether phi around a site is far from linear. The star of a site is nearly isotropic, so the slope is a weighted sum. */
-static bool is_suspect(const laves__lattice *lattice, const laves__record *r, int site) {
-  if (!isfinite(r->phi[site])) return false;
+static bool is_suspect(const thinning *t, const laves__record *r, int site) {
+  const laves__lattice *lattice = t->lattice;
+  if (!isfinite(r->phi[site]) || (t->frame->oracle->is_distance && !(fabs(r->phi[site]) < reach))) return false;
   laves__vec3 at[LAVES__C15_MAX_DEGREE], slope = {0, 0, 0};
   double rise[LAVES__C15_MAX_DEGREE], square = 0;
   int count = 0;
@@ -62,7 +63,7 @@ static void find_suspects(void *user, size_t begin, size_t end, int worker) {
   for (size_t i = begin; i < end; i++) {
     uint32_t mask = 0;
     for (int site = 0; site < LAVES__C15_SITES; site++)
-      if (is_suspect(t->lattice, &t->lattice->record[i], site)) mask |= UINT32_C(1) << site;
+      if (is_suspect(t, &t->lattice->record[i], site)) mask |= UINT32_C(1) << site;
     t->suspects[i] = mask;
   }
 }
