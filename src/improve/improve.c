@@ -14,7 +14,11 @@
 #include "improve/relax.h"
 #include "improve/smooth.h"
 
-enum { SWEEPS = 2, SMOOTH_PASSES = 5, CONTRACT_PASSES = 12, THOROUGH_ROUNDS = 3, TRIES_MAX = 4 };
+enum { SWEEPS = 2, SMOOTH_PASSES = 5, CONTRACT_PASSES = 12, CROWD_PASSES = 2, THOROUGH_ROUNDS = 3, TRIES_MAX = 4 };
+/* Where more than this share of the layer is bad after smoothing, walls are a tet thick and the window can't be met there:
+ * few passes of contraction, and no more patience. */
+static const double crowd = 0.03;
+static const size_t crowd_min = 2000;      /* tets; fewer never are a crowd */
 static const double block_side = 15;       /* sizes; see above */
 static const double worthwhile = 0.02;     /* share of bad tets that a pass must cure to be followed by its like */
 static const double thorough_below = 0.96; /* quality below which the few that remain get more patience */
@@ -201,6 +205,12 @@ static void peel_all(work *w) {
   }
 }
 
+static bool is_crowded(const work *w) {
+  size_t bad = 0;
+  for (size_t t = 0; t < w->layer->tet_count; t++) bad += is_bad(w, (int32_t)t);
+  return bad > crowd_min && (double)bad > crowd * (double)w->layer->tet_count;
+}
+
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {
   laves_context *context = layer->context;
   work w = {.frame = frame, .measure = laves__measure_of(window), .target = 1, .admit = 1, .layer = layer};
@@ -220,8 +230,9 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   if (result == LAVES_OK) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
   if (result == LAVES_OK) result = run_passes(&w, SMOOTH_PASSES, 1, error);
   if (result == LAVES_OK) settle_all(&w);
+  const bool crowded = is_crowded(&w);
   w.rounds = 1;
-  if (result == LAVES_OK) result = run_passes(&w, CONTRACT_PASSES, 2, error);
+  if (result == LAVES_OK) result = run_passes(&w, crowded ? CROWD_PASSES : CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) peel_all(&w);
   w.rounds = THOROUGH_ROUNDS;
   w.admit = thorough_below;
@@ -229,7 +240,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
     w.given_up[t] = HUGE_VAL;
     w.tries[t] = 0;
   }
-  if (result == LAVES_OK) result = run_passes(&w, CONTRACT_PASSES, 2, error);
+  if (result == LAVES_OK && !crowded) result = run_passes(&w, CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) peel_all(&w);
   if (result == LAVES_OK) settle_all(&w);
 cleanup:
