@@ -17,6 +17,8 @@ static const double count_tolerance = 0.012; /* of the wished count, where 0.03 
 
 laves_options laves_options_default(void) {
   return (laves_options){.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1},
+                         .method = LAVES_METHOD_AUTO,
+                         .guarantee = 14.4,
                          .improve = true,
                          .min_dihedral = 40,
                          .max_dihedral = 125,
@@ -58,6 +60,9 @@ laves_result laves__options_check(const laves_options *o, laves_error *error) {
   if (result == LAVES_OK && o->tet_target != 0) result = check_range("tet_target", (double)o->tet_target, 1, 1e11, error);
   if (result == LAVES_OK && o->vertex_target != 0)
     result = check_range("vertex_target", (double)o->vertex_target, 1, 2147483647, error);
+  if (result == LAVES_OK && (unsigned)o->method > LAVES_METHOD_STUFF)
+    result = laves__fail(error, LAVES_ERROR_OPTION, "method is %d, which is no laves_method", (int)o->method);
+  if (result == LAVES_OK) result = check_range("guarantee", o->guarantee, 0, 28, error);
   if (result == LAVES_OK) result = check_range("min_dihedral", o->min_dihedral, 0, 60, error);
   if (result == LAVES_OK) result = check_range("max_dihedral", o->max_dihedral, 80, 180, error);
   if (result == LAVES_OK) result = check_range("volume_length", o->volume_length, 0, 0.8, error);

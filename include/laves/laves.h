@@ -211,6 +211,11 @@ LAVES_API size_t laves_domain_thin_places(const laves_domain *domain, laves_thin
 
 /* ---- options ---------------------------------------------------------------------------------------------------- */
 
+/// How the boundary is made. AUTO: by snapping (no tetrahedron is cut), and by stuffing (tetrahedra are warped and cut, with
+/// proved angles) where snapping leaves the promised window. SNAP: by snapping alone, nothing is promised. STUFF: by stuffing
+/// alone. docs/proof.md tells what is proved.
+typedef enum laves_method { LAVES_METHOD_AUTO, LAVES_METHOD_SNAP, LAVES_METHOD_STUFF } laves_method;
+
 typedef enum laves_align { LAVES_ALIGN_NONE, LAVES_ALIGN_PCA, LAVES_ALIGN_ROTATION } laves_align;
 
 /// What a mesh shall be. From laves_options_default(), then changed. At most one of size, relative_size, tet_target
@@ -222,7 +227,11 @@ typedef struct laves_options {
   int64_t vertex_target;  ///< wished number of vertices; met within 3 %; 0: not given
   laves_align align;      ///< how the lattice lies: along the axes, along the principal axes, or turned by `rotation`
   double rotation[9];     ///< row-major rotation matrix, lattice to input; used with LAVES_ALIGN_ROTATION
-  bool improve;           ///< false: leave the boundary layer as it was snapped
+  laves_method method;    ///< how the boundary is made; default LAVES_METHOD_AUTO
+  double guarantee;       ///< smallest dihedral angle that is promised whatever the solid's shape, degrees, [0, 28]; default
+                          ///< 14.4. The nearest proved window at or above it holds: 14.4..149.65, 20..144, 22.5..140,
+                          ///< 24..138, 28..135. Above 14.4 some boundary vertices may be moved off the surface. 0: none.
+  bool improve;           ///< false: leave the boundary layer as it was made
   double min_dihedral;    ///< asked window for every dihedral angle, degrees; default 40, range 0..60
   double max_dihedral;    ///< default 125, range 80..180
   double volume_length;   ///< asked volume-length ratio sqrt(2) 6V / rms(edge)^3, 0..0.8; default 0.6
@@ -247,12 +256,17 @@ typedef struct laves_report {
     double wall_seconds;
     double cpu_seconds;  ///< of the whole process during the stage
   } stages[LAVES_STAGE_CAPACITY];
-  size_t peak_bytes;        ///< most memory that the context held at once
-  size_t lattice_tets;      ///< tetrahedra that are exact tiles
-  size_t snapped_vertices;  ///< lattice vertices that were moved on to the surface
-  size_t pinches;           ///< places where the sampled solid touched itself and was parted or trimmed
-  size_t off_surface;       ///< boundary vertices that had to stay off the surface to keep tetrahedra positive
-  size_t outside_window;    ///< tetrahedra outside the asked window
+  size_t peak_bytes;             ///< most memory that the context held at once
+  size_t lattice_tets;           ///< tetrahedra that are exact tiles
+  size_t snapped_vertices;       ///< lattice vertices that were moved on to the surface
+  size_t pinches;                ///< places where the sampled solid touched itself and was parted or trimmed
+  size_t off_surface;            ///< boundary vertices that had to stay off the surface to keep tetrahedra positive
+  size_t outside_window;         ///< tetrahedra outside the asked window
+  double promised_min_dihedral;  ///< the window that is promised for every dihedral angle, degrees; 0 and 180: none
+  double promised_max_dihedral;
+  size_t stuffed_vertices;  ///< boundary vertices of the places that were made by stuffing, before improvement
+  size_t relaxed_vertices;  ///< those of them that a guarantee above 14.4 degrees moved off the surface
+  double relaxed_max;       ///< the furthest such move, units of the input
   int warning_count;
   char warnings[LAVES_WARNING_CAPACITY][240];
 } laves_report;
