@@ -24,6 +24,7 @@ FOLDERS = {
     "background": "The tiling as a table and as sparse bricks",
     "classify": "Which bricks and sites lie inside",
     "snap": "The cover of the crossing edges, moved on to the surface",
+    "stuff": "The same by warping and cutting, with a proved window",
     "assemble": "From labelled bricks to arrays",
     "improve": "Better angles in the boundary layer",
     "certify": "Checks by code that shares nothing with the stages before",
