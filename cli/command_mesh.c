@@ -32,6 +32,8 @@ static laves_options make_options(const settings *given) {
   options.vertex_target = given->vertices;
   options.align = given->alignment.align;
   memcpy(options.rotation, given->alignment.rotation, sizeof options.rotation);
+  options.method = given->method;
+  options.guarantee = given->guarantee;
   options.improve = !given->no_improve;
   if (given->window.given) {
     options.min_dihedral = given->window.values[0];
@@ -154,7 +156,7 @@ static void write_times(json *out, const session *run, const mesh_run *all) {
 }
 
 static void write_options(json *out, const settings *given, const laves_options *options) {
-  static const char *const aligns[] = {"none", "pca", "rotation"};
+  static const char *const aligns[] = {"none", "pca", "rotation"}, *const methods[] = {"auto", "snap", "stuff"};
   json_open_object(out, "options");
   json_number(out, "size", given->size > 0 ? given->size : NAN);
   json_number(out, "relative_size", given->relative_size > 0 ? given->relative_size : NAN);
@@ -162,6 +164,8 @@ static void write_options(json *out, const settings *given, const laves_options 
   json_number(out, "vertices", given->vertices > 0 ? (double)given->vertices : NAN);
   json_text(out, "align", aligns[options->align]);
   if (options->align == LAVES_ALIGN_ROTATION) json_numbers(out, "rotation", options->rotation, 9);
+  json_text(out, "method", methods[options->method]);
+  json_number(out, "guarantee", options->guarantee);
   json_boolean(out, "improve", options->improve);
   json_numbers(out, "window", (const double[2]){options->min_dihedral, options->max_dihedral}, 2);
   json_number(out, "volume_length", options->volume_length);
@@ -180,6 +184,10 @@ static void write_report(json *out, const mesh_run *all) {
   json_integer(out, "pinches", (int64_t)report->pinches);
   json_integer(out, "off_surface", (int64_t)report->off_surface);
   json_integer(out, "outside_window", (int64_t)report->outside_window);
+  json_numbers(out, "promised_window", (const double[2]){report->promised_min_dihedral, report->promised_max_dihedral}, 2);
+  json_integer(out, "stuffed_vertices", (int64_t)report->stuffed_vertices);
+  json_integer(out, "relaxed_vertices", (int64_t)report->relaxed_vertices);
+  json_number(out, "relaxed_max", report->relaxed_max);
 }
 
 static void mesh_json(json *out, const session *run, const void *facts) {

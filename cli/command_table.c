@@ -71,8 +71,14 @@ const option option_rows[] = {
     {"align", 0, MESH, IN_SHAPE, OPTION_ALIGNMENT, "HOW", NULL, false, 0, 0, "none", MEMBER(alignment), 0,
      "how the lattice lies: none, pca (principal axes), an axis and an angle in degrees as x,y,z,angle, or a rotation matrix as "
      "9 numbers row by row"},
+    {"method", 0, MESH, IN_SHAPE, OPTION_METHOD, "HOW", NULL, false, 0, 0, "auto", MEMBER(method), 0,
+     "how the boundary is made: snap (no tetrahedron is cut), stuff (warped and cut, with proved angles), or auto: snapped, and "
+     "stuffed where snapping leaves the guaranteed window"},
+    {"guarantee", 0, MESH, IN_SHAPE, OPTION_REAL, "DEG", "degrees", false, 0, 28, "14.4", MEMBER(guarantee), 0,
+     "smallest dihedral angle promised whatever the shape (docs/proof.md): 14.4 keeps every boundary vertex on the surface; 20, "
+     "22.5, 24 and 28 may move some off it, where the surface is rougher than the size; 0: no promise"},
     {"no-improve", 0, MESH, IN_SHAPE, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(no_improve), 0,
-     "leave the boundary layer as it was snapped"},
+     "leave the boundary layer as it was made"},
     {"window", 0, MESH, IN_SHAPE, OPTION_WINDOW, "LO,HI", "degrees", false, 0, 180, "40,125", MEMBER(window), 0,
      "asked range of every dihedral angle (LO 0..60, HI 80..180); exit code 3 when it is missed"},
     {"volume-length", 0, MESH, IN_SHAPE, OPTION_REAL, "Q", NULL, false, 0, 0.8, "0.6", MEMBER(volume_length), 0,

@@ -181,6 +181,17 @@ static bool parse_format(const char *text, laves_format *format, char *wrong) {
   return false;
 }
 
+static bool parse_method(const char *text, laves_method *method, char *wrong) {
+  static const char *const names[] = {"auto", "snap", "stuff"};
+  for (int i = 0; i < 3; ++i) {
+    if (strcmp(text, names[i]) != 0) continue;
+    *method = (laves_method)i;
+    return true;
+  }
+  snprintf(wrong, SENTENCE_CAPACITY, "must be one of auto, snap, stuff, not '%.30s'", text);
+  return false;
+}
+
 static bool parse_words(const char *text, option_texts *list, char *wrong) {
   if (list->count == OUTPUT_CAPACITY) {
     snprintf(wrong, SENTENCE_CAPACITY, "can be given %d times at most", OUTPUT_CAPACITY);
@@ -212,6 +223,8 @@ static bool store_value(const option *row, const char *text, settings *given, ch
       return parse_window(text, member, wrong);
     case OPTION_CELLS:
       return parse_cells(row, text, member, wrong);
+    case OPTION_METHOD:
+      return parse_method(text, member, wrong);
     case OPTION_ALIGNMENT:
       return parse_alignment(text, member, wrong);
     case OPTION_FORMAT:
@@ -348,6 +361,7 @@ static options_outcome take_next(parser *state, bool *options_ended) {
 options_outcome options_parse(const command *about, int count, char **words, settings *given) {
   *given = (settings){.command = about->name,
                       .volume_length = -1,
+                      .guarantee = 14.4,
                       .compress = 1,
                       .list = 5,
                       .color = "class",

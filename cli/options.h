@@ -40,6 +40,8 @@ typedef struct settings {
   bool no_improve, ascii, quiet, verbose;
   option_numbers window; /* lowest, highest dihedral angle */
   double volume_length;  /* negative: not given */
+  laves_method method;
+  double guarantee; /* degrees */
   laves_format format;
   int64_t compress, threads, list;
   int64_t memory; /* bytes; 0: no limit */
@@ -60,6 +62,7 @@ typedef enum option_kind {
   OPTION_CELLS,     /* option_numbers, one or three */
   OPTION_ALIGNMENT, /* option_alignment */
   OPTION_FORMAT,    /* laves_format */
+  OPTION_METHOD,    /* laves_method */
 } option_kind;
 
 /* One row of the table. */

@@ -72,6 +72,11 @@ laves_result laves__options_check(const laves_options *o, laves_error *error) {
   return result;
 }
 
+const laves__guarantee *laves__options_guarantee(const laves_options *o) {
+  if (o->method == LAVES_METHOD_STUFF) return laves__guarantee_find(o->guarantee);
+  return o->method == LAVES_METHOD_SNAP || o->guarantee == 0 ? NULL : laves__guarantee_find(o->guarantee);
+}
+
 laves__mat3 laves__options_rotation(const laves_options *o, const laves__oracle *oracle) {
   const double *r = o->rotation;
   if (o->align == LAVES_ALIGN_ROTATION) return (laves__mat3){{{r[0], r[1], r[2]}, {r[3], r[4], r[5]}, {r[6], r[7], r[8]}}};

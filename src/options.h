@@ -3,9 +3,13 @@
 #define LAVES_OPTIONS_H
 
 #include "domain/frame.h"
+#include "stuff/rule.h"
 
 /* Checks the options: LAVES_ERROR_OPTION with a sentence that names the option and its range. */
 laves_result laves__options_check(const laves_options *options, laves_error *error);
+
+/* The window that is promised; NULL: none. */
+const laves__guarantee *laves__options_guarantee(const laves_options *options);
 
 /* The rotation of the lattice that the options ask for. */
 laves__mat3 laves__options_rotation(const laves_options *options, const laves__oracle *oracle);

@@ -40,6 +40,7 @@ typedef struct laves__record {
   int8_t label[LAVES__C15_SITES];   /* laves__label */
   uint8_t depth[LAVES__C15_SITES];  /* edges to the nearest ON site, up to LAVES__DEPTH_MAX */
   int32_t vertex[LAVES__C15_SITES]; /* index in the boundary layer, or -1 */
+  uint32_t zone;                    /* bit for each site: the boundary there is made by stuffing */
   uint32_t forced;                  /* bit for each site: ON for the sake of a thin part */
   uint64_t solid[3];                /* bit t: tetrahedron t, all four corners ON, is part of the mesh (a thin wall) */
   uint64_t eligible[3];             /* bit t: such a tetrahedron has a good enough shape to be part of it */

@@ -29,7 +29,9 @@ laves__measure laves__measure_of(const laves__window *w) {
   static const double radians = 3.14159265358979323846 / 180;
   return (laves__measure){.low_scale = 1 / (1 - cos(w->min_dihedral * radians)),
                           .high_scale = 1 / (1 + cos(w->max_dihedral * radians)),
-                          .length_scale = w->volume_length > 0 ? 1 / w->volume_length : 1e30};
+                          .length_scale = w->volume_length > 0 ? 1 / w->volume_length : 1e30,
+                          .held_low = w->held_min > 0 ? 1 - cos(w->held_min * radians) : -1,
+                          .held_high = w->held_min > 0 ? 1 + cos(w->held_max * radians) : -1};
 }
 
 /* A bad tet and the block of space in which it is worked on. */

@@ -3,7 +3,8 @@
  *     q = min over the six dihedral angles t of  (1 - cos t) / (1 - cos lo),  (1 + cos t) / (1 + cos hi)
  *     and VL / vt,  VL = sqrt(2) 6V / l_rms^3  the volume-length ratio (1 for the regular tetrahedron)
  *
- * q >= 1 means inside the window. Flat and inverted tets get their volume (at most FLAT), so that untangling is part of
+ * q >= 1 means inside the window. Where a second, wider window is held, tets outside it count as flat, so that no step that
+ * makes one is taken. Flat and inverted tets get their volume (at most FLAT), so that untangling is part of
  * the same ascent. Angles come from the four face normals N_i (outwards, opposite corner i): cos t_ij = -n_i . n_j. */
 #ifndef LAVES_IMPROVE_MEASURE_H
 #define LAVES_IMPROVE_MEASURE_H
@@ -18,6 +19,8 @@ typedef struct laves__measure {
   double low_scale;    /* 1 / (1 - cos lo) */
   double high_scale;   /* 1 / (1 + cos hi) */
   double length_scale; /* 1 / vt, or a large number when not asked */
+  double held_low;     /* 1 - cos of the least angle that is held, 1 + cos of the largest; -1: none is */
+  double held_high;
 } laves__measure;
 
 laves__measure laves__measure_of(const laves__window *window);
@@ -52,6 +55,7 @@ static inline double laves__quality(const laves__measure *m, const laves__vec3 p
     if (d < least) least = d;
     if (d > most) most = d;
   }
+  if (1 + least < m->held_low || 1 - most < m->held_high) return LAVES__FLAT;
   const double mean = laves__edge_sum(p) / 6;
   double q = (1 + least) * m->low_scale;
   const double high = (1 - most) * m->high_scale, length = LAVES__SQRT2 * volume6 / (mean * sqrt(mean)) * m->length_scale;

@@ -93,14 +93,14 @@ static void find_feet(void *user, size_t begin, size_t end, int worker) {
   for (size_t i = begin; i < end; i++)
     for (uint32_t mask = s->wanted[i]; mask; mask &= mask - 1) {
       const int site = __builtin_ctz(mask);
-      laves__foot *foot = &s->feet->block[s->feet->block_of[i]][site];
+      laves__foot *foot = laves__feet_at(s->feet, i, site);
       if (foot->state != LAVES__FOOT_UNKNOWN) continue;
       foot->state = laves__site_foot(s->frame, s->lattice, (int32_t)i, site, foot) ? LAVES__FOOT_FOUND : LAVES__FOOT_NONE;
     }
 }
 
-/* Blocks for the records that want feet and have none. */
-static bool make_blocks(const laves__lattice *lattice, const uint32_t *wanted, laves__feet *feet) {
+bool laves__feet_make(const laves__lattice *lattice, const uint32_t *wanted, laves__feet *feet) {
+  feet->context = lattice->context;
   laves_context *context = lattice->context;
   if (feet->record_count < lattice->record_count) {
     int32_t *grown = laves__realloc(context, feet->block_of, feet->record_count, lattice->record_count, sizeof *grown);
@@ -119,8 +119,7 @@ static bool make_blocks(const laves__lattice *lattice, const uint32_t *wanted, l
 
 laves_result laves__feet_find(const laves__frame *frame, const laves__lattice *lattice, const uint32_t *wanted, laves__feet *feet,
                               laves_error *error) {
-  feet->context = lattice->context;
-  if (!make_blocks(lattice, wanted, feet)) return laves__fail_memory(lattice->context, error);
+  if (!laves__feet_make(lattice, wanted, feet)) return laves__fail_memory(lattice->context, error);
   search s = {frame, lattice, wanted, feet};
   if (!laves__parallel_for(lattice->context, "snap", lattice->record_count, 8, find_feet, &s))
     return laves__fail_cancelled(error);
@@ -129,8 +128,8 @@ laves_result laves__feet_find(const laves__frame *frame, const laves__lattice *l
 
 const laves__foot *laves__feet_get(const laves__feet *feet, int32_t record, int site) {
   if ((size_t)record >= feet->record_count || feet->block_of[record] < 0) return NULL;
-  const laves__foot *foot = &feet->block[feet->block_of[record]][site];
-  return foot->state == LAVES__FOOT_FOUND ? foot : NULL;
+  const laves__foot *foot = laves__feet_at(feet, (size_t)record, site);
+  return foot->state == LAVES__FOOT_FOUND || foot->state == LAVES__FOOT_OFF ? foot : NULL;
 }
 
 void laves__feet_free(laves__feet *feet) {

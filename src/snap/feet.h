@@ -11,7 +11,8 @@ typedef struct laves__foot {
   uint8_t state; /* LAVES__FOOT_... */
 } laves__foot;
 
-enum { LAVES__FOOT_UNKNOWN, LAVES__FOOT_FOUND, LAVES__FOOT_NONE };
+/* OFF: the position is where the vertex shall stand, though not on the surface. */
+enum { LAVES__FOOT_UNKNOWN, LAVES__FOOT_FOUND, LAVES__FOOT_NONE, LAVES__FOOT_OFF };
 
 /* Blocks of one foot for each site, for the records that need any. */
 typedef struct laves__feet {
@@ -26,7 +27,13 @@ typedef struct laves__feet {
  * parallel. Records may have been added since the last call. LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
 laves_result laves__feet_find(const laves__frame *frame, const laves__lattice *lattice, const uint32_t *wanted, laves__feet *feet,
                               laves_error *error);
-/* A foot that was asked for and found, else NULL. */
+/* Room for the feet of the sites in `wanted`, for whoever finds them otherwise; false when memory is short. */
+bool laves__feet_make(const laves__lattice *lattice, const uint32_t *wanted, laves__feet *feet);
+/* A foot for which there is room. */
+static inline laves__foot *laves__feet_at(const laves__feet *feet, size_t record, int site) {
+  return &feet->block[feet->block_of[record]][site];
+}
+/* A foot that was found (or OFF), else NULL. */
 const laves__foot *laves__feet_get(const laves__feet *feet, int32_t record, int site);
 void laves__feet_free(laves__feet *feet);
 

@@ -154,15 +154,15 @@ static void trim(laves__lattice *lattice, int32_t record, int site) {
   }
 }
 
-static bool list_parts(const repair *w, uint32_t id, laves__parted *parted) {
-  const int site = (int)(id % LAVES__C15_SITES);
-  const uint32_t kept = laves__star_kept(w->lattice, (int32_t)(id / LAVES__C15_SITES), site);
-  if (!laves__grow(w->lattice->context, &parted->item, &parted->capacity, parted->count + 1, sizeof *parted->item)) return false;
+bool laves__part_site(const laves__lattice *lattice, int32_t record, int site, laves__parted *parted) {
+  const uint32_t kept = laves__star_kept(lattice, record, site);
+  const star_graph graph = graph_of(site);
+  if (!laves__grow(lattice->context, &parted->item, &parted->capacity, parted->count + 1, sizeof *parted->item)) return false;
   laves__parted_site *item = &parted->item[parted->count++];
   memset(item, 0, sizeof *item);
-  item->site = id;
+  item->site = (uint32_t)record * LAVES__C15_SITES + (uint32_t)site;
   for (uint32_t rest = kept; rest;) {
-    const uint32_t piece = first_piece(&w->graph[site], rest);
+    const uint32_t piece = first_piece(&graph, rest);
     item->fan[item->fan_count++] = piece;
     rest &= ~piece;
   }
@@ -203,7 +203,7 @@ static laves_result repair_round(repair *w, laves__parted *parted, size_t *pinch
       lattice->record[record].label[site] = LAVES__LABEL_IN;
       *again = true;
     } else if (now == PARTS) {
-      memory = list_parts(w, (uint32_t)id, parted);
+      memory = laves__part_site(lattice, record, site, parted);
     } else if (now == WALL && w->verdicts[id] == WALL) { /* only there room was made */
       trim(lattice, record, site);
       ++*pinches;

@@ -12,6 +12,7 @@
 enum { ACTIVE_REACH = 2 };
 
 static bool has_surface_site(const laves__record *r) {
+  if (r->zone) return true; /* cuts may be here */
   for (int site = 0; site < LAVES__C15_SITES; site++)
     if (r->label[site] == LAVES__LABEL_ON) return true;
   return false;
@@ -34,38 +35,61 @@ static bool widen_records(laves__lattice *lattice) {
   return true;
 }
 
-/* Breadth first from the ON sites that bound kept tets, through IN sites. */
-static bool measure_depths(laves__lattice *lattice, size_t *vertex_count) {
-  laves_context *context = lattice->context;
-  uint32_t *queue = NULL;
-  size_t capacity = 0, count = 0;
-  bool memory = true;
-  for (size_t i = 0; memory && i < lattice->record_count; i++) {
-    laves__record *r = &lattice->record[i];
-    for (int site = 0; memory && site < LAVES__C15_SITES; site++) {
-      if (r->label[site] != LAVES__LABEL_ON) continue;
-      if (laves__star_kept(lattice, (int32_t)i, site) == 0) continue;
-      r->depth[site] = 0;
-      memory = laves__grow(context, &queue, &capacity, count + 1, sizeof *queue);
-      if (memory) queue[count++] = (uint32_t)i * LAVES__C15_SITES + (uint32_t)site;
+typedef struct site_queue {
+  laves_context *context;
+  uint32_t *id;
+  size_t count, capacity;
+} site_queue;
+
+/* Gives a site a depth and a place in the queue; false when memory is short. */
+static bool reach(laves__lattice *lattice, site_queue *queue, uint32_t id, int depth) {
+  lattice->record[id / LAVES__C15_SITES].depth[id % LAVES__C15_SITES] = (uint8_t)depth;
+  if (!laves__grow(queue->context, &queue->id, &queue->capacity, queue->count + 1, sizeof *queue->id)) return false;
+  queue->id[queue->count++] = id;
+  return true;
+}
+
+/* The first sites of the search that have the given depth, 0 or 1. Depth 0: ON sites that bound kept tets or pieces. Depth 1:
+ * ON sites whose star is whole, and inner corners of pieces. */
+static bool reach_first(laves__lattice *lattice, const laves__cuts *cuts, int depth, site_queue *queue) {
+  for (size_t i = 0; i < lattice->record_count; i++)
+    for (int site = 0; site < LAVES__C15_SITES; site++) {
+      if (lattice->record[i].label[site] != LAVES__LABEL_ON) continue;
+      const uint32_t kept = laves__star_kept(lattice, (int32_t)i, site);
+      const bool whole = kept == (UINT32_C(1) << laves__c15_star_size[site]) - 1;
+      const uint32_t id = (uint32_t)i * LAVES__C15_SITES + (uint32_t)site;
+      if (kept && whole == (depth == 1) && !reach(lattice, queue, id, depth)) return false;
     }
-  }
-  for (size_t head = 0; memory && head < count; head++) {
-    const laves__record *r = &lattice->record[queue[head] / LAVES__C15_SITES];
-    const int site = (int)(queue[head] % LAVES__C15_SITES);
+  for (size_t t = 0; cuts && t < cuts->tet_count; t++)
+    for (int k = 0; k < 4; k++) {
+      const uint32_t id = cuts->tet[t][k];
+      if (id & LAVES__CUT_VERTEX) continue;
+      const laves__record *r = &lattice->record[id / LAVES__C15_SITES];
+      const int site = (int)(id % LAVES__C15_SITES);
+      if ((r->label[site] == LAVES__LABEL_ON) == (depth == 0) && r->depth[site] > depth && !reach(lattice, queue, id, depth))
+        return false;
+    }
+  return true;
+}
+
+/* Breadth first from the boundary, through IN sites. */
+static bool measure_depths(laves__lattice *lattice, const laves__cuts *cuts, size_t *vertex_count) {
+  site_queue queue = {.context = lattice->context};
+  bool memory = reach_first(lattice, cuts, 0, &queue) && reach_first(lattice, cuts, 1, &queue);
+  for (size_t head = 0; memory && head < queue.count; head++) {
+    const laves__record *r = &lattice->record[queue.id[head] / LAVES__C15_SITES];
+    const int site = (int)(queue.id[head] % LAVES__C15_SITES);
     if (r->depth[site] == LAVES__DEPTH_MAX) break;
     for (int k = 0; memory && k < laves__c15_degree[site]; k++) {
       const laves__site s = laves__neighbour(r, site, k);
       if (s.cell < 0) continue;
-      laves__record *other = &lattice->record[s.cell];
+      const laves__record *other = &lattice->record[s.cell];
       if (other->label[s.site] != LAVES__LABEL_IN || other->depth[s.site] <= r->depth[site] + 1) continue;
-      other->depth[s.site] = (uint8_t)(r->depth[site] + 1);
-      memory = laves__grow(context, &queue, &capacity, count + 1, sizeof *queue);
-      if (memory) queue[count++] = (uint32_t)s.cell * LAVES__C15_SITES + s.site;
+      memory = reach(lattice, &queue, (uint32_t)s.cell * LAVES__C15_SITES + s.site, r->depth[site] + 1);
     }
   }
-  *vertex_count = count;
-  laves__free(context, queue, capacity, sizeof *queue);
+  *vertex_count = queue.count;
+  laves__free(queue.context, queue.id, queue.capacity, sizeof *queue.id);
   return memory;
 }
 
@@ -125,8 +149,16 @@ static laves__parted_site *find_parted(const laves__parted *parted, uint32_t id)
   return low < parted->count && parted->item[low].site == id ? &parted->item[low] : NULL;
 }
 
-/* Numbers the layer's vertices by record and site. Sites with several fans get one vertex for each, and a negative mark. */
-static void number_vertices(laves__lattice *lattice, laves__parted *parted, laves__layer *layer) {
+static void place_at(const laves__foot *foot, laves__layer *layer, size_t v) {
+  layer->position[v] = foot->position;
+  layer->normal[v] = v3(foot->normal[0], foot->normal[1], foot->normal[2]);
+  layer->hint[v] = foot->hint;
+  layer->off_surface[v] = layer->depth[v] == 0 && foot->state == LAVES__FOOT_OFF;
+}
+
+/* Numbers the layer's vertices at sites by record and site, and returns how many they are. Sites with several fans get one vertex
+ * for each, and a negative mark. */
+static size_t number_vertices(laves__lattice *lattice, laves__parted *parted, laves__layer *layer) {
   size_t next = 0;
   for (size_t i = 0; i < lattice->record_count; i++) {
     laves__record *r = &lattice->record[i];
@@ -145,7 +177,7 @@ static void number_vertices(laves__lattice *lattice, laves__parted *parted, lave
       }
     }
   }
-  LAVES_ASSERT(next == layer->vertex_count);
+  return next;
 }
 
 /* The vertex of a parted site that a tet uses: that of the fan which holds the tet. */
@@ -158,7 +190,8 @@ static int32_t parted_vertex(const laves__parted_site *parted, int tet, int corn
   return parted->vertex[fan];
 }
 
-static void number_tets(const laves__lattice *lattice, const laves__parted *parted, laves__layer *layer) {
+/* The whole tets; returns how many. */
+static size_t number_tets(const laves__lattice *lattice, const laves__parted *parted, laves__layer *layer) {
   size_t next = 0;
   for (size_t i = 0; i < lattice->record_count; i++) {
     const laves__record *r = &lattice->record[i];
@@ -175,28 +208,44 @@ static void number_tets(const laves__lattice *lattice, const laves__parted *part
         next++;
       }
   }
-  LAVES_ASSERT(next == layer->tet_count);
+  return next;
 }
 
-/* Surface vertices go to their feet; those without one stay. */
-static void place_vertices(const laves__feet *feet, laves__layer *layer) {
-  for (size_t v = 0; v < layer->vertex_count; v++) {
-    if (layer->depth[v] != 0 || layer->origin[v] == LAVES__NO_ORIGIN) continue;
-    const uint32_t id = layer->origin[v];
-    const laves__foot *foot = laves__feet_get(feet, (int32_t)(id / LAVES__C15_SITES), (int)(id % LAVES__C15_SITES));
-    if (!foot) {
-      layer->off_surface[v] = true;
-      continue;
+/* Cut vertices come after those at sites, pieces after the whole tets. */
+static void add_cuts(const laves__lattice *lattice, const laves__cuts *cuts, size_t first_vertex, size_t first_tet,
+                     laves__layer *layer) {
+  for (size_t i = 0; i < cuts->vertex_count; i++) {
+    const size_t v = first_vertex + i;
+    layer->depth[v] = 0;
+    layer->origin[v] = LAVES__NO_ORIGIN;
+    place_at(&cuts->vertex[i], layer, v);
+  }
+  for (size_t t = 0; t < cuts->tet_count; t++)
+    for (int k = 0; k < 4; k++) {
+      const uint32_t id = cuts->tet[t][k];
+      layer->tet[first_tet + t][k] = id & LAVES__CUT_VERTEX
+                                         ? (int32_t)(first_vertex + (id & ~LAVES__CUT_VERTEX))
+                                         : lattice->record[id / LAVES__C15_SITES].vertex[id % LAVES__C15_SITES];
     }
-    layer->position[v] = foot->position;
-    layer->normal[v] = v3(foot->normal[0], foot->normal[1], foot->normal[2]);
-    layer->hint[v] = foot->hint;
+}
+
+/* Vertices at ON sites go to their feet; those without one stay. */
+static void place_vertices(const laves__lattice *lattice, const laves__feet *feet, size_t count, laves__layer *layer) {
+  for (size_t v = 0; v < count; v++) {
+    const uint32_t id = layer->origin[v];
+    if (layer->depth[v] > 1 || id == LAVES__NO_ORIGIN) continue;
+    const int32_t record = (int32_t)(id / LAVES__C15_SITES);
+    const int site = (int)(id % LAVES__C15_SITES);
+    if (lattice->record[record].label[site] != LAVES__LABEL_ON) continue;
+    const laves__foot *foot = laves__feet_get(feet, record, site);
+    if (foot) place_at(foot, layer, v);
+    if (!foot && layer->depth[v] == 0) layer->off_surface[v] = true;
   }
 }
 
 /* Further copies of a parted vertex stand where the first stands. */
-static void place_copies(laves__layer *layer) {
-  for (size_t v = 1; v < layer->vertex_count; v++) {
+static void place_copies(size_t count, laves__layer *layer) {
+  for (size_t v = 1; v < count; v++) {
     if (layer->origin[v] != LAVES__NO_ORIGIN) continue;
     layer->position[v] = layer->position[v - 1];
     layer->normal[v] = layer->normal[v - 1];
@@ -205,23 +254,33 @@ static void place_copies(laves__layer *layer) {
   }
 }
 
-laves_result laves__layer_build(const laves__feet *feet, laves__lattice *lattice, laves__parted *parted, laves__layer *layer,
-                                laves_error *error) {
+void laves__cuts_free(laves__cuts *cuts) {
+  if (!cuts->context) return;
+  laves__free(cuts->context, cuts->vertex, cuts->vertex_count, sizeof *cuts->vertex);
+  laves__free(cuts->context, cuts->tet, cuts->tet_capacity, sizeof *cuts->tet);
+  memset(cuts, 0, sizeof *cuts);
+}
+
+laves_result laves__layer_build(const laves__feet *feet, laves__lattice *lattice, laves__parted *parted, const laves__cuts *cuts,
+                                laves__layer *layer, laves_error *error) {
   laves_context *context = lattice->context;
   size_t vertex_count = 0, tet_count = 0;
-  if (!widen_records(lattice) || !measure_depths(lattice, &vertex_count)) return laves__fail_memory(context, error);
+  if (!widen_records(lattice) || !measure_depths(lattice, cuts, &vertex_count)) return laves__fail_memory(context, error);
   for (size_t i = 0; i < parted->count; i++) vertex_count += (size_t)parted->item[i].fan_count - 1;
   if (!laves__parallel_for(context, "snap", lattice->record_count, 16, sort_tets, lattice)) return laves__fail_cancelled(error);
   for (size_t i = 0; i < lattice->record_count; i++) tet_count += count_bits(lattice->record[i].layer);
-  if (tet_count > INT32_MAX)
+  const size_t cut_vertices = cuts ? cuts->vertex_count : 0, pieces = cuts ? cuts->tet_count : 0;
+  if (tet_count + pieces > INT32_MAX)
     return laves__fail(error, LAVES_ERROR_OPTION,
-                       "the boundary layer would have %zu tetrahedra, more than can be indexed; choose a larger size", tet_count);
-  laves_result result = laves__layer_create(context, vertex_count, tet_count, layer, error);
+                       "the boundary layer would have %zu tetrahedra, more than can be indexed; choose a larger size",
+                       tet_count + pieces);
+  laves_result result = laves__layer_create(context, vertex_count + cut_vertices, tet_count + pieces, layer, error);
   if (result != LAVES_OK) return result;
-  number_vertices(lattice, parted, layer);
-  number_tets(lattice, parted, layer);
-  place_vertices(feet, layer);
-  place_copies(layer);
+  const size_t at_sites = number_vertices(lattice, parted, layer), whole = number_tets(lattice, parted, layer);
+  LAVES_ASSERT(at_sites == vertex_count && whole == tet_count);
+  place_vertices(lattice, feet, at_sites, layer);
+  place_copies(at_sites, layer);
+  if (cuts) add_cuts(lattice, cuts, at_sites, whole, layer);
   return laves__layer_link(layer, error);
 }
 

@@ -13,8 +13,7 @@ static laves__vec3 *start_positions(const laves__lattice *lattice, const laves__
   return start;
 }
 
-/* The feet of all ON sites. */
-static laves_result find_surface_feet(const laves__frame *frame, const laves__lattice *lattice, laves__feet *feet,
+laves_result laves__find_surface_feet(const laves__frame *frame, const laves__lattice *lattice, laves__feet *feet,
                                       laves_error *error) {
   laves_context *context = lattice->context;
   const size_t records = lattice->record_count;
@@ -36,12 +35,12 @@ laves_result laves__snap(const laves__frame *frame, laves__lattice *lattice, lav
   laves__vec3 *start = NULL;
   laves_result result = laves__cover(frame, lattice, &feet, error);
   if (result == LAVES_OK) result = laves__thin_cover(frame, lattice, &feet, error);
-  if (result == LAVES_OK) result = find_surface_feet(frame, lattice, &feet, error);
+  if (result == LAVES_OK) result = laves__find_surface_feet(frame, lattice, &feet, error);
   if (result == LAVES_OK) result = laves__tip_cover(frame, lattice, &feet, error);
   if (result == LAVES_OK) result = laves__find_solid(frame, lattice, &feet, error);
   if (result == LAVES_OK) result = laves__pinch_repair(lattice, &parted, &counts->pinches, error);
-  if (result == LAVES_OK) result = find_surface_feet(frame, lattice, &feet, error); /* of sites that went ON since */
-  if (result == LAVES_OK) result = laves__layer_build(&feet, lattice, &parted, layer, error);
+  if (result == LAVES_OK) result = laves__find_surface_feet(frame, lattice, &feet, error); /* of sites that went ON since */
+  if (result == LAVES_OK) result = laves__layer_build(&feet, lattice, &parted, NULL, layer, error);
   laves__feet_free(&feet);
   if (result == LAVES_OK) {
     start = start_positions(lattice, layer);

@@ -61,13 +61,33 @@ typedef struct laves__parted {
   size_t count, capacity;
 } laves__parted;
 
+/* Lists a site's fans; false when memory is short. */
+bool laves__part_site(const laves__lattice *lattice, int32_t record, int site, laves__parted *parted);
+
 /* The fourth step: labels change until every ON site's kept tets form fans that each border on one piece of the outside;
  * sites with several fans are listed. Makes records where labels reach deeper. */
 laves_result laves__pinch_repair(laves__lattice *lattice, laves__parted *parted, size_t *pinches, laves_error *error);
 
-/* The last step. */
-laves_result laves__layer_build(const laves__feet *feet, laves__lattice *lattice, laves__parted *parted, laves__layer *layer,
-                                laves_error *error);
+/* The feet of all ON sites that are not known yet. */
+laves_result laves__find_surface_feet(const laves__frame *frame, const laves__lattice *lattice, laves__feet *feet,
+                                      laves_error *error);
+
+/* What there is beside whole tets where tets are cut: vertices between sites, and the pieces. */
+typedef struct laves__cuts {
+  laves_context *context;
+  laves__foot *vertex; /* [vertex_count] */
+  size_t vertex_count;
+  uint32_t (*tet)[4]; /* [tet_count] corners: a site's number, or LAVES__CUT_VERTEX with the index of a vertex */
+  size_t tet_count, tet_capacity;
+} laves__cuts;
+
+#define LAVES__CUT_VERTEX (UINT32_C(1) << 31)
+
+void laves__cuts_free(laves__cuts *cuts);
+
+/* The last step. Pieces may be NULL: no tet is cut. An ON site whose star is whole is an inner vertex of the layer. */
+laves_result laves__layer_build(const laves__feet *feet, laves__lattice *lattice, laves__parted *parted, const laves__cuts *cuts,
+                                laves__layer *layer, laves_error *error);
 /* Removes specks: parts of a few tets without an inner vertex, that hang together with nothing else; returns how many parts
  * went. The last part always stays. */
 size_t laves__layer_drop_specks(laves__layer *layer);

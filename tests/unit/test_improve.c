@@ -13,7 +13,7 @@
 #include "improve/contract.h"
 #include "improve/smooth.h"
 
-static const laves__window window = {40, 125, 0.6};
+static const laves__window window = {.min_dihedral = 40, .max_dihedral = 125, .volume_length = 0.6};
 static const char *const solids[] = {"sphere(1)", "torus(1, 0.4) - box(0.5)", "sphere(1) - sphere(0.8)"};
 
 static void measure_all(const laves__measure *m, laves__layer *l) {
@@ -242,7 +242,7 @@ static void the_stage_keeps_its_promises(void **state) {
 /* 1 on the border of the window, monotone beyond. */
 static void quality_is_one_on_the_border(void **state) {
   (void)state;
-  const laves__measure m = laves__measure_of(&(laves__window){40, 125, 0});
+  const laves__measure m = laves__measure_of(&(laves__window){.min_dihedral = 40, .max_dihedral = 125});
   /* A wedge: dihedral angle `angle` at the edge along z, the others between. */
   double before = 0;
   for (int angle = 20; angle <= 60; angle += 5) {

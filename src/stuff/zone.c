@@ -1,0 +1,78 @@
+/* Zones grow from the tets that break the promise: first some cells around them, in the end the whole component. */
+#include "stuff/zone.h"
+
+static const uint32_t all_sites = (UINT32_C(1) << LAVES__C15_SITES) - 1;
+static const double radians = 3.14159265358979323846 / 180;
+
+/* Whether the tet is outside the promised window. Improvement holds a window a little inside, so rounding never decides. */
+static bool is_broken(const laves__layer *layer, size_t tet, const laves__guarantee *promised) {
+  if (layer->tet[tet][0] < 0) return false;
+  laves__vec3 p[4];
+  laves__layer_points(layer, (int32_t)tet, p);
+  return !(laves__guarantee_margin(promised, p) >= 1);
+}
+
+/* The guarantee with its promised angles in place of the proved ones. */
+static laves__guarantee promised_window(const laves__guarantee *g) {
+  laves__guarantee promised = *g;
+  promised.cos_min = cos(g->min_dihedral * radians);
+  promised.cos_max = cos(g->max_dihedral * radians);
+  return promised;
+}
+
+size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer *layer) {
+  const laves__guarantee promised = promised_window(guarantee);
+  size_t count = 0;
+  for (size_t t = 0; t < layer->tet_count; t++) count += is_broken(layer, t, &promised);
+  return count;
+}
+
+static void zone_cells(laves__lattice *lattice, laves__vec3 centre, int reach) {
+  const int32_t x = (int32_t)floor(centre.x / LAVES__CELL_SIDE), y = (int32_t)floor(centre.y / LAVES__CELL_SIDE),
+                z = (int32_t)floor(centre.z / LAVES__CELL_SIDE);
+  for (int dz = -reach; dz <= reach; dz++)
+    for (int dy = -reach; dy <= reach; dy++)
+      for (int dx = -reach; dx <= reach; dx++) {
+        const int32_t cell = laves__lattice_cell(lattice, x + dx, y + dy, z + dz);
+        if (cell >= 0) lattice->record[cell].zone = all_sites;
+      }
+}
+
+void laves__zone_around(const laves__guarantee *guarantee, const laves__layer *layer, laves__lattice *lattice, int reach) {
+  const laves__guarantee promised = promised_window(guarantee);
+  for (size_t t = 0; t < layer->tet_count; t++) {
+    if (!is_broken(layer, t, &promised)) continue;
+    laves__vec3 p[4];
+    laves__layer_points(layer, (int32_t)t, p);
+    zone_cells(lattice, v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25), reach);
+  }
+}
+
+bool laves__zone_components(laves__lattice *lattice) {
+  laves_context *context = lattice->context;
+  int32_t *list = laves__alloc(context, lattice->record_count, sizeof *list);
+  bool *known = laves__alloc_zeroed(context, lattice->record_count, sizeof *known);
+  size_t count = 0;
+  for (size_t i = 0; list && known && i < lattice->record_count; i++) {
+    if (!lattice->record[i].zone) continue;
+    known[i] = true;
+    list[count++] = (int32_t)i;
+  }
+  for (size_t head = 0; head < count; head++) {
+    const laves__record *r = &lattice->record[list[head]];
+    for (int k = 0; k < 27; k++) {
+      if (r->around[k] < 0 || known[r->around[k]]) continue;
+      known[r->around[k]] = true;
+      list[count++] = r->around[k];
+    }
+  }
+  for (size_t i = 0; i < count; i++) lattice->record[list[i]].zone = all_sites;
+  const bool memory = list && known;
+  laves__free(context, known, lattice->record_count, sizeof *known);
+  laves__free(context, list, lattice->record_count, sizeof *list);
+  return memory;
+}
+
+void laves__zone_everything(laves__lattice *lattice) {
+  for (size_t i = 0; i < lattice->record_count; i++) lattice->record[i].zone = all_sites;
+}

@@ -1,0 +1,22 @@
+/* Where the boundary must be made by stuffing. */
+#ifndef LAVES_STUFF_ZONE_H
+#define LAVES_STUFF_ZONE_H
+
+#include "background/lattice.h"
+#include "mesh/layer.h"
+#include "stuff/rule.h"
+
+/* How many tets of the layer are outside the promised window. */
+size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer *layer);
+
+/* Puts in the zone all sites of the cells within `reach` cells of each tet outside the promised window. */
+void laves__zone_around(const laves__guarantee *guarantee, const laves__layer *layer, laves__lattice *lattice, int reach);
+
+/* Puts in the zone whole components: every site of the records that are joined to a zone by neighbouring cells. No tet then
+ * has corners both in the zone and beyond it. False when memory is short. */
+bool laves__zone_components(laves__lattice *lattice);
+
+/* Puts all sites of all records in the zone. */
+void laves__zone_everything(laves__lattice *lattice);
+
+#endif
