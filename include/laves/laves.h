@@ -1,6 +1,6 @@
 /* laves: near-regular tetrahedral meshes of any solid.  The public interface, in order of use:
  *
- *   version -> results and errors -> context -> domain -> options -> generate -> mesh -> check -> files
+ *   version -> results and errors -> context -> domain -> options -> generate -> mesh -> check -> certificate -> files
  *
  * Conventions, everywhere: signed distance negative inside; tetrahedra positive, det[b-a, c-a, d-a] > 0; boundary
  * triangles face outwards; indices from 0; coordinates in the units of the input; angles in degrees.
@@ -349,12 +349,17 @@ typedef struct laves_check {
   laves_statistic volume_length;               ///< sqrt(2) 6V / rms(edge)^3
   size_t histogram[LAVES_HISTOGRAM_BINS];      ///< of all dihedral angles, bins of 5 degrees from 0 to 180
   double min_dihedral_place[3], max_dihedral_place[3], radius_ratio_place[3];  ///< centroids of the worst tets
+  double radius_edge_place[3], volume_length_place[3];
+  int64_t min_dihedral_tet, max_dihedral_tet, radius_ratio_tet;  ///< their indices; -1 when no tet can be measured
+  int64_t radius_edge_tet, volume_length_tet;
   // Distance to a domain, in the units of the mesh; set when has_distance.
   bool has_distance;
   double to_surface_max, to_surface_mean;      ///< from samples of the boundary to the surface
   double from_surface_max, from_surface_mean;  ///< from samples of the surface to the boundary
   double to_surface_place[3], from_surface_place[3];
-  double domain_volume;  ///< NAN when unknown
+  double to_surface_cover, from_surface_cover;      ///< how far a point of the sampled side can be from a sample; NAN: unknown
+  double to_surface_at_most, from_surface_at_most;  ///< no point of that side is further than this; NAN: unknown
+  double domain_volume;                             ///< NAN when unknown
 } laves_check;
 
 /// Checks a mesh by code that shares nothing with the stages that make meshes.
@@ -386,6 +391,146 @@ LAVES_API laves_result laves_check_window(laves_context *context, const laves_me
 LAVES_API laves_result laves_check_distance(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
                                             double distance, laves_place *places, size_t capacity, size_t *count,
                                             laves_error *error);
+
+/* ---- certificate -------------------------------------------------------------------------------------------------- */
+
+enum { LAVES_HASH_CAPACITY = 65, LAVES_NAME_CAPACITY = 256, LAVES_EXCEPTION_CAPACITY = 128 };
+
+/// What can be out of order: X(name, key in JSON, phrase). The value of an exception is the angle in degrees (or the
+/// volume-length ratio, below 1), the distance, or the thickness that its kind speaks of, else NAN.
+#define LAVES_EXCEPTION_LIST(X)                                                       \
+  X(INVERTED_TET, "inverted_tet", "tetrahedra that are flat or turned over")          \
+  X(NONMANIFOLD_EDGE, "nonmanifold_edge", "boundary edges without exactly two faces") \
+  X(NONMANIFOLD_VERTEX, "nonmanifold_vertex", "boundary vertices with several fans")  \
+  X(OUTSIDE_PROMISED, "outside_promised", "tetrahedra outside the promised window")   \
+  X(OUTSIDE_ASKED, "outside_asked", "tetrahedra outside the asked window")            \
+  X(DISTANT, "distant", "places where mesh and surface are further apart than asked") \
+  X(OFF_SURFACE, "off_surface", "boundary vertices off the surface")                  \
+  X(THIN, "thin", "places where the solid is thinner than the size")
+
+typedef enum laves_exception_kind {
+#define LAVES_EXCEPTION_ENUM(name, key, text) LAVES_EXCEPTION_##name,
+  LAVES_EXCEPTION_LIST(LAVES_EXCEPTION_ENUM)
+#undef LAVES_EXCEPTION_ENUM
+      LAVES_EXCEPTION_COUNT
+} laves_exception_kind;
+
+/// Why, as far as the domain's surface near by tells: X(name, key in JSON, phrase).
+#define LAVES_CAUSE_LIST(X)                                             \
+  X(UNKNOWN, "unknown", "no cause is known")                            \
+  X(THIN, "thin", "the solid is thinner than the size near by")         \
+  X(CREASE, "crease", "the surface has a sharp edge or corner near by") \
+  X(CURVED, "curved", "the surface bends with a radius below two sizes")
+
+typedef enum laves_cause {
+#define LAVES_CAUSE_ENUM(name, key, text) LAVES_CAUSE_##name,
+  LAVES_CAUSE_LIST(LAVES_CAUSE_ENUM)
+#undef LAVES_CAUSE_ENUM
+      LAVES_CAUSE_COUNT
+} laves_cause;
+
+/// "outside_promised" and the like, and the phrase; never NULL.
+LAVES_API const char *laves_exception_key(laves_exception_kind kind);
+LAVES_API const char *laves_exception_text(laves_exception_kind kind);
+LAVES_API const char *laves_cause_key(laves_cause cause);
+LAVES_API const char *laves_cause_text(laves_cause cause);
+
+typedef struct laves_exception {
+  laves_exception_kind kind;
+  laves_cause cause;
+  double place[3];
+  double value;             ///< as told at LAVES_EXCEPTION_LIST
+  double limit;             ///< that it passes; NAN: none
+  int64_t index;            ///< of the tetrahedron or vertex; -1: neither
+  double curvature_radius;  ///< of the surface near by, as in laves_place; NAN: not known
+} laves_exception;
+
+/// What a mesh is, recomputed from its arrays: filled by laves_certify(), or read from a file.
+typedef struct laves_certificate {
+  char version[32];                     ///< of the library that made the statement
+  char mesh_hash[LAVES_HASH_CAPACITY];  ///< SHA-256 of points and tets, as docs/certificate.md tells; 64 digits
+  laves_check check;                    ///< counts, validity, topology, quality, distances
+
+  bool has_input;                        ///< the next four are known
+  char input_name[LAVES_NAME_CAPACITY];  ///< base name of the file; or the expression, cut where it is long
+  char input_kind[16];                   ///< "surface", "implicit" or "function"
+  char input_format[48];                 ///< as in laves_domain_info
+  char input_hash[LAVES_HASH_CAPACITY];  ///< SHA-256 of the file's bytes, or of the expression's text; empty: not known
+
+  bool has_options;  ///< the mesh was made by laves with these options, and the report's figures below are known
+  laves_options options;
+  double size;                                         ///< that was used
+  size_t stuffed_vertices, relaxed_vertices, pinches;  ///< as in laves_report
+  double relaxed_max;
+
+  size_t lattice_tets;       ///< tets congruent to one of the three tiles of one common size, found by their shape
+  double lattice_size;       ///< that size (mean edge of the tiling); 0: none
+  double lattice_tolerance;  ///< relative, of the squares of edges
+
+  double angle_margin;                                  ///< degrees; no angle is computed worse than this
+  double attained_min_dihedral, attained_max_dihedral;  ///< contain every angle: the extremes widened by the margin
+  bool has_promise;
+  double promised_min_dihedral, promised_max_dihedral;
+  bool promise_holds;  ///< every tet is inside the promised window by more than the margin; true without a promise
+  double asked_min_dihedral, asked_max_dihedral, asked_volume_length;
+
+  double distance_asked;       ///< the distance from which on places count as DISTANT; 0: not looked for
+  double off_surface_asked;    ///< the distance from which on boundary vertices count as OFF_SURFACE; 0: not looked for
+  char to_surface_reason[96];  ///< why an upper bound of the distance is not known; empty where it is
+  char from_surface_reason[96];
+
+  size_t exception_counts[LAVES_EXCEPTION_COUNT];  ///< exact; THIN: as many as were looked for
+  size_t exception_count;                          ///< of those listed: at most LAVES_PLACE_CAPACITY of a kind, the worst first
+  laves_exception exceptions[LAVES_EXCEPTION_CAPACITY];
+} laves_certificate;
+
+/// What to measure against. From laves_certify_options_default(), then changed.
+typedef struct laves_certify_options {
+  const laves_domain *domain;    ///< to measure distances against and to find causes; NULL: none
+  bool distances;                ///< false: leave distances out even where there is a domain; default true
+  const char *input;             ///< the file or the expression of the domain, to be named and hashed; NULL: none
+  const laves_options *options;  ///< with which the mesh was made; NULL: it was not made by laves_generate()
+  const laves_report *report;    ///< the report of that call, for its promise; given with options
+  double promised_min_dihedral, promised_max_dihedral;  ///< where there is no report; default 0, 180: nothing promised
+  double min_dihedral, max_dihedral, volume_length;     ///< asked window where there are no options; default as there
+  uint32_t cookie;
+} laves_certify_options;
+
+LAVES_API laves_certify_options laves_certify_options_default(void);
+
+/// States what a mesh is, by code that shares nothing with the stages that make meshes.
+/// @param options  NULL: the defaults
+/// @return LAVES_OK when the statement is complete (see certificate->check.valid and promise_holds), LAVES_ERROR_OPTION,
+///         LAVES_ERROR_INPUT (the input's file cannot be read), LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED
+/// Cost: as laves_check_mesh(), and about 0.05 microseconds a tet for the hash and the shapes.
+LAVES_API laves_result laves_certify(laves_context *context, const laves_mesh *mesh, const laves_certify_options *options,
+                                     laves_certificate *certificate, laves_error *error);
+
+/// Writes a certificate as JSON (docs/certificate.schema.json), whole or not at all.
+LAVES_API laves_result laves_certificate_write(laves_context *context, const laves_certificate *certificate, const char *path,
+                                               laves_error *error);
+
+/// Reads a certificate. What is missing, of the wrong type or out of range is an error that names the member; members that
+/// are not known are passed over.
+/// @return LAVES_OK, LAVES_ERROR_INPUT, LAVES_ERROR_MEMORY
+LAVES_API laves_result laves_certificate_read(laves_context *context, const char *path, laves_certificate *certificate,
+                                              laves_error *error);
+
+/// A sentence on one figure that a certificate states and that is not so.
+typedef struct laves_difference {
+  char text[240];
+} laves_difference;
+
+/// Whether a certificate tells the truth of a mesh: recomputes all that can be and compares it.
+/// @param domain       the surface; NULL: then distances, causes and the input's hash are not compared
+/// @param input        its file or expression, or NULL
+/// @param certificate  as read
+/// @param differences  out: laves_difference[capacity]    @param count  out: how many there are in all, may exceed capacity
+/// @return LAVES_OK when it could be compared, or as laves_certify()
+LAVES_API laves_result laves_certificate_verify(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
+                                                const char *input, const laves_certificate *certificate,
+                                                laves_difference *differences, size_t capacity, size_t *count,
+                                                laves_error *error);
 
 /* ---- files ------------------------------------------------------------------------------------------------------ */
 

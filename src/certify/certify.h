@@ -19,9 +19,15 @@ void laves__boundary_free(laves__boundary *boundary);
 laves_result laves__check_topology(laves_context *context, const laves_mesh *mesh, laves_check *check, laves__boundary *boundary,
                                    laves_error *error);
 
+/* Where a boundary is no manifold: the first of the edges and vertices that laves_check counts. */
+typedef struct laves__faults {
+  int32_t edges[LAVES_PLACE_CAPACITY][2];
+  int32_t vertices[LAVES_PLACE_CAPACITY];
+} laves__faults;
+
 /* Edges, fans, components and genus of a boundary, and how many of the mesh's stored faces differ from it. */
 laves_result laves__check_boundary(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
-                                   laves_check *check, laves_error *error);
+                                   laves_check *check, laves__faults *faults, laves_error *error);
 
 /* Angles, ratios, volume and area. */
 laves_result laves__check_shapes(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
@@ -40,6 +46,7 @@ typedef struct laves__sample {
   laves__vec3 point;
   double distance; /* to the other side; NAN when none was found */
   double weight;   /* in means; 0 for samples that only look for the largest distance */
+  int64_t vertex;  /* of the mesh; -1: a point of an edge or face, or of the surface */
 } laves__sample;
 
 /* Samples in a fixed order: first [0, boundary_count) on the boundary of the mesh with their distances to the domain's surface,
@@ -48,7 +55,8 @@ typedef struct laves__samples {
   laves_context *context;
   laves__sample *items;
   size_t count, boundary_count, capacity;
-  double spacing; /* mean edge of the boundary */
+  double spacing;                       /* mean edge of the boundary */
+  double boundary_cover, surface_cover; /* how far a point of that side can be from its nearest sample; NAN: unknown */
 } laves__samples;
 
 void laves__samples_free(laves__samples *samples);
@@ -58,9 +66,16 @@ void laves__samples_free(laves__samples *samples);
 laves_result laves__measure_distances(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
                                       const laves_domain *domain, laves__samples *samples, laves_error *error);
 
-/* Fills the distances of a check. */
+/* Fills the distances of a check. *samples: owned by the caller on success. */
 laves_result laves__check_distances(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
-                                    const laves_domain *domain, laves_check *check, laves_error *error);
+                                    const laves_domain *domain, laves_check *check, laves__samples *samples, laves_error *error);
+
+/* The places where samples are further than `distance` from the other side; see laves_check_distance(). */
+laves_result laves__distant_places(laves_context *context, const laves__samples *samples, const laves_domain *domain,
+                                   double distance, laves_place *places, size_t capacity, size_t *count, laves_error *error);
+
+/* How far a point of a triangle can be from the nearest of its corners. */
+double laves__corner_cover(laves__vec3 a, laves__vec3 b, laves__vec3 c);
 
 /* Samples of a domain's surface (local coordinates), about `spacing` apart, for domains that offer none themselves.
  * Returns how many, at most `capacity`; none when the search would cost too much at that spacing. */
@@ -70,6 +85,34 @@ size_t laves__sample_surface(laves_context *context, const laves__oracle *oracle
 /* The smallest radius of curvature of the domain's surface within about `reach` of a point (coordinates of the mesh),
  * seen at that scale; INFINITY where it is flat or absent. */
 double laves__curvature_radius(const laves_domain *domain, laves__vec3 point, double reach);
+
+/* ---- all of a check ---- */
+
+/* What a check leaves for others to look into. */
+typedef struct laves__survey {
+  laves__boundary boundary;
+  laves__faults faults;
+  laves__samples samples; /* empty without a domain */
+} laves__survey;
+
+/* laves_check_mesh(), with its findings. *survey: owned by the caller on success. */
+laves_result laves__survey_mesh(laves_context *context, const laves_mesh *mesh, const laves_domain *domain, laves_check *check,
+                                laves__survey *survey, laves_error *error);
+void laves__survey_free(laves__survey *survey);
+
+/* ---- certificates ---- */
+
+/* The hash of points and tets, as mesh_digest.c defines it. */
+laves_result laves__mesh_digest(laves_context *context, const laves_mesh *mesh, char text[LAVES_HASH_CAPACITY],
+                                laves_error *error);
+
+/* Counts the tets that are exact tiles by their shape; fills the members lattice_... */
+laves_result laves__find_tiles(laves_context *context, const laves_mesh *mesh, laves_certificate *certificate,
+                               laves_error *error);
+
+/* Fills the exceptions, and what they say of the windows. The certificate's check, windows and size are filled. */
+laves_result laves__list_exceptions(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
+                                    const laves__survey *survey, laves_certificate *certificate, laves_error *error);
 
 /* ---- tets and boundaries ---- */
 

@@ -11,22 +11,37 @@ static bool is_valid(const laves_check *check) {
          check->nonmanifold_edges == 0 && check->nonmanifold_vertices == 0;
 }
 
-laves_result laves_check_mesh(laves_context *context, const laves_mesh *mesh, const laves_domain *domain, laves_check *check,
-                              laves_error *error) {
+void laves__survey_free(laves__survey *survey) {
+  laves__samples_free(&survey->samples);
+  laves__boundary_free(&survey->boundary);
+}
+
+laves_result laves__survey_mesh(laves_context *context, const laves_mesh *mesh, const laves_domain *domain, laves_check *check,
+                                laves__survey *survey, laves_error *error) {
   laves__progress_reset(context);
   memset(check, 0, sizeof *check);
+  memset(survey, 0, sizeof *survey);
   check->vertices = mesh->vertex_count;
   check->tets = mesh->tet_count;
   check->faces = mesh->face_count;
   check->domain_volume = NAN;
 
-  laves__boundary boundary = {0};
-  laves_result result = laves__check_topology(context, mesh, check, &boundary, error);
-  if (result == LAVES_OK) result = laves__check_boundary(context, mesh, &boundary, check, error);
-  if (result == LAVES_OK) result = laves__check_shapes(context, mesh, &boundary, check, error);
+  laves__boundary *boundary = &survey->boundary;
+  laves_result result = laves__check_topology(context, mesh, check, boundary, error);
+  if (result == LAVES_OK) result = laves__check_boundary(context, mesh, boundary, check, &survey->faults, error);
+  if (result == LAVES_OK) result = laves__check_shapes(context, mesh, boundary, check, error);
   if (result == LAVES_OK) result = laves__check_edges(context, mesh, check, error);
-  if (result == LAVES_OK && domain) result = laves__check_distances(context, mesh, &boundary, domain, check, error);
-  laves__boundary_free(&boundary);
+  if (result == LAVES_OK && domain)
+    result = laves__check_distances(context, mesh, boundary, domain, check, &survey->samples, error);
+  if (result != LAVES_OK) laves__survey_free(survey);
   check->valid = result == LAVES_OK && is_valid(check);
+  return result;
+}
+
+laves_result laves_check_mesh(laves_context *context, const laves_mesh *mesh, const laves_domain *domain, laves_check *check,
+                              laves_error *error) {
+  laves__survey survey;
+  const laves_result result = laves__survey_mesh(context, mesh, domain, check, &survey, error);
+  if (result == LAVES_OK) laves__survey_free(&survey);
   return result;
 }

@@ -42,6 +42,7 @@ typedef struct seams {
   size_t *face_parent;           /* [face_count] */
   size_t *corner_parent;         /* [3 face_count] */
   uint8_t *fans;                 /* [vertex_count] 0, 1, or 2 for more */
+  laves__faults *faults;
 } seams;
 
 static void list_edges(seams *s) {
@@ -64,6 +65,19 @@ static void join(seams *s, size_t corner_a, size_t corner_b) {
   unite(s->corner_parent, end_a, opposite ? corner_b : end_b);
 }
 
+static void note_edge(laves__faults *faults, uint64_t key, size_t *count) {
+  if (*count < LAVES_PLACE_CAPACITY) {
+    faults->edges[*count][0] = (int32_t)(key >> 32);
+    faults->edges[*count][1] = (int32_t)(key & UINT32_MAX);
+  }
+  ++*count;
+}
+
+static void note_vertex(laves__faults *faults, int32_t vertex, size_t *count) {
+  if (*count < LAVES_PLACE_CAPACITY) faults->vertices[*count] = vertex;
+  ++*count;
+}
+
 /* Returns the number of different edges, and in *nonmanifold that of edges without exactly two triangles. */
 static size_t sew(seams *s, size_t *nonmanifold) {
   const size_t count = 3 * s->face_count;
@@ -71,7 +85,7 @@ static size_t sew(seams *s, size_t *nonmanifold) {
   *nonmanifold = 0;
   for (size_t i = 0, j; i < count; i = j, edges++) {
     for (j = i + 1; j < count && s->edges[j].key == s->edges[i].key; j++) join(s, s->edges[i].value, s->edges[j].value);
-    if (j - i != 2) ++*nonmanifold;
+    if (j - i != 2) note_edge(s->faults, s->edges[i].key, nonmanifold);
   }
   return edges;
 }
@@ -82,9 +96,10 @@ static size_t count_fans(seams *s, size_t *nonmanifold) {
   *nonmanifold = 0;
   for (size_t corner = 0; corner < 3 * s->face_count; corner++) {
     if (s->corner_parent[corner] != corner) continue;
-    uint8_t *fans = &s->fans[s->faces[corner / 3][corner % 3]];
+    const int32_t vertex = s->faces[corner / 3][corner % 3];
+    uint8_t *fans = &s->fans[vertex];
     total++;
-    if (*fans == 1) ++*nonmanifold;
+    if (*fans == 1) note_vertex(s->faults, vertex, nonmanifold);
     if (*fans < 2) ++*fans;
   }
   return total;
@@ -202,8 +217,11 @@ clean_up:
 }
 
 laves_result laves__check_boundary(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
-                                   laves_check *check, laves_error *error) {
-  seams s = {.faces = (const int32_t(*)[3])boundary->faces, .face_count = boundary->count, .vertex_count = mesh->vertex_count};
+                                   laves_check *check, laves__faults *faults, laves_error *error) {
+  seams s = {.faces = (const int32_t(*)[3])boundary->faces,
+             .face_count = boundary->count,
+             .vertex_count = mesh->vertex_count,
+             .faults = faults};
   laves_result result = check_seams(context, &s, check, error);
   if (result != LAVES_OK) return result;
   size_t different;

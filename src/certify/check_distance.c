@@ -3,8 +3,15 @@
  * From the mesh: its boundary vertices, the midpoints of its boundary edges, and four points inside each triangle are
  * projected on to the surface. The inner points (the centroid and the three points that halve the way from it to the
  * corners) carry the mean, each a quarter of the triangle's area; vertices and midpoints only look for the maximum.
- * From the surface: the domain's own samples, at a third of the mean boundary edge, look for the nearest boundary
- * triangle. Projection starts with a short reach, which is fast, and widens it while nothing is found.
+ * From the surface: where it is made of flat faces, these are halved across their longest edge until every point of a
+ * piece is within a third of the mean boundary edge of the piece's centroid; the centroids look for the nearest boundary
+ * triangle, each with the weight of its piece. Other domains offer samples of their own. Projection starts with a short reach,
+ * which is fast, and widens it while nothing is found.
+ *
+ * Distance to a set changes by no more than the way one goes. So where it is known how far a point can be from the nearest
+ * sample (the cover), the largest distance is known from both sides: sampled <= true <= sampled + cover. The samples of a
+ * boundary triangle are the corners and centroids of the four triangles that its midpoints make, so its cover is half that
+ * of a triangle by its corners and centroid.
  *
  * All work is in the domain's local frame, where no digits are lost far from the origin. */
 #include <string.h>
@@ -13,7 +20,7 @@
 
 enum { CHUNK = 256, SAMPLES_PER_FACE = 4 + 3 + 3, INNER = 4 };
 
-/* Distance of surface samples in mean boundary edges: about five on the area of a triangle. */
+/* Distance of surface samples in mean boundary edges, and the cover of flat ones: about six on the area of a triangle. */
 #define SURFACE_SPACING 0.3
 /* The first reach of a projection in mean boundary edges; it grows by REACH_GROWTH up to the size of everything. */
 #define FIRST_REACH 2.0
@@ -53,7 +60,33 @@ static double mean_edge(const laves_mesh *mesh, const laves__boundary *boundary,
   return count ? sum / (double)count : 0;
 }
 
-static laves__sample sample_at(laves__vec3 point, double weight) { return (laves__sample){point, NAN, weight}; }
+static laves__sample sample_at(laves__vec3 point, double weight) { return (laves__sample){point, NAN, weight, -1}; }
+
+/* In an acute triangle the circumcentre is furthest; else the points of the longest edge that are as far from one of its ends
+ * as from the corner opposite. */
+double laves__corner_cover(laves__vec3 a, laves__vec3 b, laves__vec3 c) {
+  double x2 = v3_norm2(v3_sub(c, b)), y2 = v3_norm2(v3_sub(a, c)), z2 = v3_norm2(v3_sub(b, a)), swap;
+  if (x2 > z2) swap = x2, x2 = z2, z2 = swap;
+  if (y2 > z2) swap = y2, y2 = z2, z2 = swap;
+  if (x2 + y2 > z2) {
+    const double area4 = 2 * v3_norm(v3_cross(v3_sub(b, a), v3_sub(c, a)));
+    return area4 > 0 ? sqrt(x2 * y2) * sqrt(z2) / area4 : sqrt(z2) / 2;
+  }
+  const double z = sqrt(z2);
+  const double near_x = x2 > 0 ? x2 * z / (x2 + (z2 - y2)) : 0, near_y = y2 > 0 ? y2 * z / (y2 + (z2 - x2)) : 0;
+  return fmax(near_x, near_y);
+}
+
+/* Room for the rounding of covers. */
+#define COVER_SLACK (1 + 1e-9)
+
+/* By the samples of add_face_samples(). */
+static double face_cover(const laves__vec3 p[3]) {
+  const laves__vec3 centroid = v3_scale(v3_add(p[0], v3_add(p[1], p[2])), 1.0 / 3);
+  double cover = 0;
+  for (int i = 0; i < 3; i++) cover = fmax(cover, laves__corner_cover(centroid, p[i], p[(i + 1) % 3]));
+  return cover / 2 * COVER_SLACK;
+}
 
 /* Each vertex once (where `seen` does not have it yet), each edge where it ascends, and the inner points. */
 static void add_face_samples(const laves_mesh *mesh, const int32_t face[3], uint8_t *seen, laves__samples *samples) {
@@ -62,7 +95,7 @@ static void add_face_samples(const laves_mesh *mesh, const int32_t face[3], uint
   for (int i = 0; i < 3; i++) p[i] = mesh->points[face[i]];
   if (!v3_finite(p[0]) || !v3_finite(p[1]) || !v3_finite(p[2])) return;
   for (int i = 0; i < 3; i++) {
-    if (!seen[face[i]]) *next++ = sample_at(p[i], 0);
+    if (!seen[face[i]]) *next++ = (laves__sample){p[i], NAN, 0, face[i]};
     seen[face[i]] = 1;
     if (face[i] < face[(i + 1) % 3]) *next++ = sample_at(v3_lerp(p[i], p[(i + 1) % 3], 0.5), 0);
   }
@@ -71,6 +104,7 @@ static void add_face_samples(const laves_mesh *mesh, const int32_t face[3], uint
   *next++ = sample_at(centroid, weight);
   for (int i = 0; i < 3; i++) *next++ = sample_at(v3_lerp(centroid, p[i], 0.5), weight);
   samples->count = (size_t)(next - samples->items);
+  samples->boundary_cover = fmax(samples->boundary_cover, face_cover(p));
 }
 
 static laves_result list_boundary_samples(laves_context *context, measuring *m, laves_error *error) {
@@ -137,17 +171,66 @@ static double boundary_area(const laves__samples *samples) {
   return area;
 }
 
-/* Asks the domain for samples and appends them. */
-static laves_result list_surface_samples(laves_context *context, measuring *m, laves_error *error) {
+/* A list of samples in the making: without items only counted. */
+typedef struct flat_samples {
+  laves__sample *items;
+  size_t count, most;
+  double reach, cover;
+  laves__vec3 origin;
+} flat_samples;
+
+/* Halves a triangle until its centroid is near to all of it. */
+static void sample_piece(flat_samples *list, laves__vec3 a, laves__vec3 b, laves__vec3 c) {
+  const laves__vec3 centroid = v3_scale(v3_add(a, v3_add(b, c)), 1.0 / 3);
+  const double radius = fmax(v3_distance(centroid, a), fmax(v3_distance(centroid, b), v3_distance(centroid, c)));
+  if (radius > list->reach && list->count < list->most) {
+    const double x = v3_norm2(v3_sub(c, b)), y = v3_norm2(v3_sub(a, c)), z = v3_norm2(v3_sub(b, a));
+    const laves__vec3 p = z >= x && z >= y ? c : x >= y ? a : b; /* opposite the longest edge, then the others in turn */
+    const laves__vec3 q = z >= x && z >= y ? a : x >= y ? b : c, r = z >= x && z >= y ? b : x >= y ? c : a;
+    const laves__vec3 middle = v3_lerp(q, r, 0.5);
+    sample_piece(list, p, q, middle);
+    sample_piece(list, p, middle, r);
+    return;
+  }
+  if (list->items) {
+    const double area = v3_norm(v3_cross(v3_sub(b, a), v3_sub(c, a))) / 2;
+    list->items[list->count] = sample_at(v3_add(centroid, list->origin), area);
+    list->cover = fmax(list->cover, radius * COVER_SLACK);
+  }
+  list->count++;
+}
+
+static void sample_flat_faces(flat_samples *list, const laves__oracle *oracle) {
+  list->count = 0;
+  for (size_t f = 0; f < oracle->flat_face_count && list->count <= list->most; f++) {
+    laves__vec3 p[3];
+    oracle->flat_face(oracle->self, f, p);
+    sample_piece(list, p[0], p[1], p[2]);
+  }
+}
+
+/* Counts, with wider samples when there are too many, then fills. */
+static laves_result list_flat_samples(laves_context *context, const measuring *m, double spacing, laves_error *error) {
   laves__samples *samples = m->samples;
-  double spacing = SURFACE_SPACING * samples->spacing;
-  const double area = m->oracle->area > 0 ? m->oracle->area : 2 * boundary_area(samples);
-  if (!(spacing > 0) || !isfinite(area)) return LAVES_OK;
-  if (area / (spacing * spacing) > SURFACE_SAMPLES_MAX) spacing = sqrt(area / SURFACE_SAMPLES_MAX);
-  const size_t room = (size_t)(4 * area / (spacing * spacing)) + 4096;
+  flat_samples list = {.most = (size_t)SURFACE_SAMPLES_MAX, .reach = spacing, .origin = m->oracle->origin};
+  for (sample_flat_faces(&list, m->oracle); list.count > list.most; sample_flat_faces(&list, m->oracle)) list.reach *= 1.5;
+  if (!laves__grow(context, &samples->items, &samples->capacity, samples->count + list.count, sizeof *samples->items))
+    return laves__fail_memory(context, error);
+  list.items = samples->items + samples->count;
+  list.most = list.count;
+  sample_flat_faces(&list, m->oracle);
+  samples->count += list.count;
+  samples->surface_cover = list.cover;
+  return LAVES_OK;
+}
+
+/* Asks the domain for samples and appends them. */
+static laves_result list_own_samples(laves_context *context, const measuring *m, double spacing, size_t room,
+                                     laves_error *error) {
+  const laves__oracle *oracle = m->oracle;
+  laves__samples *samples = m->samples;
   laves__vec3 *points = laves__alloc(context, room, sizeof *points);
   if (!points) return laves__fail_memory(context, error);
-  const laves__oracle *oracle = m->oracle;
   size_t count = oracle->sample ? oracle->sample(oracle->self, spacing, points, room) : 0;
   for (double wider = spacing; !oracle->sample && count == 0 && wider < m->reach_max && !laves__is_cancelled(context); wider *= 2)
     count = laves__sample_surface(context, oracle, wider, points, room);
@@ -162,6 +245,17 @@ static laves_result list_surface_samples(laves_context *context, measuring *m, l
   return result;
 }
 
+static laves_result list_surface_samples(laves_context *context, measuring *m, laves_error *error) {
+  const laves__oracle *oracle = m->oracle;
+  double spacing = SURFACE_SPACING * m->samples->spacing;
+  const double area = oracle->area > 0 ? oracle->area : 2 * boundary_area(m->samples);
+  if (!(spacing > 0) || !isfinite(area)) return LAVES_OK;
+  if (area / (spacing * spacing) > SURFACE_SAMPLES_MAX) spacing = sqrt(area / SURFACE_SAMPLES_MAX);
+  if (oracle->flat_face && (double)oracle->flat_face_count < SURFACE_SAMPLES_MAX / 2)
+    return list_flat_samples(context, m, spacing, error);
+  return list_own_samples(context, m, spacing, (size_t)(4 * area / (spacing * spacing)) + 4096, error);
+}
+
 /* ---- both ---- */
 
 static size_t chunks(size_t count) { return (count + CHUNK - 1) / CHUNK; }
@@ -170,7 +264,7 @@ laves_result laves__measure_distances(laves_context *context, const laves_mesh *
                                       const laves_domain *domain, laves__samples *samples, laves_error *error) {
   laves__box3 box;
   measuring m = {.mesh = mesh, .boundary = boundary, .oracle = &domain->oracle, .samples = samples};
-  *samples = (laves__samples){.context = context, .spacing = mean_edge(mesh, boundary, &box)};
+  *samples = (laves__samples){.context = context, .spacing = mean_edge(mesh, boundary, &box), .surface_cover = NAN};
   const laves__box3 bounds = domain->oracle.bounds;
   m.reach = FIRST_REACH * samples->spacing;
   box = box3_add(box3_add(box, v3_add(bounds.lower, m.oracle->origin)), v3_add(bounds.upper, m.oracle->origin));
@@ -210,16 +304,21 @@ static void summarise(const laves__samples *samples, size_t begin, size_t end, d
   *mean = weights > 0 ? sum / weights : NAN;
 }
 
+/* Feet on surfaces are exact; on implicit solids they come from Newton steps, which promise nothing. */
+static bool has_exact_feet(const laves_domain *domain) { return domain->info.kind == LAVES_DOMAIN_SURFACE; }
+
 laves_result laves__check_distances(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
-                                    const laves_domain *domain, laves_check *check, laves_error *error) {
-  laves__samples samples;
-  const laves_result result = laves__measure_distances(context, mesh, boundary, domain, &samples, error);
+                                    const laves_domain *domain, laves_check *check, laves__samples *samples, laves_error *error) {
+  const laves_result result = laves__measure_distances(context, mesh, boundary, domain, samples, error);
   if (result != LAVES_OK) return result;
-  summarise(&samples, 0, samples.boundary_count, &check->to_surface_max, &check->to_surface_mean, check->to_surface_place);
-  summarise(&samples, samples.boundary_count, samples.count, &check->from_surface_max, &check->from_surface_mean,
+  summarise(samples, 0, samples->boundary_count, &check->to_surface_max, &check->to_surface_mean, check->to_surface_place);
+  summarise(samples, samples->boundary_count, samples->count, &check->from_surface_max, &check->from_surface_mean,
             check->from_surface_place);
+  check->to_surface_cover = samples->boundary_cover;
+  check->from_surface_cover = samples->surface_cover;
+  check->to_surface_at_most = has_exact_feet(domain) ? check->to_surface_max + samples->boundary_cover : NAN;
+  check->from_surface_at_most = check->from_surface_max + samples->surface_cover;
   check->has_distance = true;
   check->domain_volume = domain->oracle.volume;
-  laves__samples_free(&samples);
   return LAVES_OK;
 }

@@ -143,11 +143,24 @@ static laves_statistic statistic(const tally *t, double relative_to) {
   return (laves_statistic){t->min, t->max, relative_to + mean, sqrt(fmax(0, variance))};
 }
 
-static void set_place(const laves_mesh *mesh, const tally *t, size_t tet, double place[3]) {
+/* Names the tet and its centroid; -1 when none could be measured. */
+static void set_place(const laves_mesh *mesh, const tally *t, size_t tet, int64_t *index, double place[3]) {
   laves__vec3 p[4];
+  *index = -1;
   if (t->count == 0 || !laves__tet_corners(mesh, tet, p)) return;
   const laves__vec3 centroid = v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25);
+  *index = (int64_t)tet;
   memcpy(place, &centroid, sizeof centroid);
+}
+
+static void set_places(const laves_mesh *mesh, const tally measures[MEASURES], laves_check *check) {
+  const tally *least = &measures[MIN_DIHEDRAL], *most = &measures[MAX_DIHEDRAL], *ratio = &measures[RADIUS_RATIO];
+  const tally *edge = &measures[RADIUS_EDGE], *length = &measures[VOLUME_LENGTH];
+  set_place(mesh, least, least->min_tet, &check->min_dihedral_tet, check->min_dihedral_place);
+  set_place(mesh, most, most->max_tet, &check->max_dihedral_tet, check->max_dihedral_place);
+  set_place(mesh, ratio, ratio->min_tet, &check->radius_ratio_tet, check->radius_ratio_place);
+  set_place(mesh, edge, edge->max_tet, &check->radius_edge_tet, check->radius_edge_place);
+  set_place(mesh, length, length->min_tet, &check->volume_length_tet, check->volume_length_place);
 }
 
 static void report(const shapes *s, size_t block_count, laves_check *check) {
@@ -162,10 +175,7 @@ static void report(const shapes *s, size_t block_count, laves_check *check) {
   laves_statistic *const targets[MEASURES] = {&check->min_dihedral, &check->max_dihedral, &check->radius_ratio,
                                               &check->radius_edge, &check->volume_length};
   for (int m = 0; m < MEASURES; m++) *targets[m] = statistic(&all.measures[m], origin[m]);
-  const tally *least = &all.measures[MIN_DIHEDRAL], *most = &all.measures[MAX_DIHEDRAL], *ratio = &all.measures[RADIUS_RATIO];
-  set_place(s->mesh, least, least->min_tet, check->min_dihedral_place);
-  set_place(s->mesh, most, most->max_tet, check->max_dihedral_place);
-  set_place(s->mesh, ratio, ratio->min_tet, check->radius_ratio_place);
+  set_places(s->mesh, all.measures, check);
 }
 
 laves_result laves__check_shapes(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,

@@ -84,9 +84,10 @@ static size_t choose(const laves__samples *samples, const laves_domain *domain, 
   return g->count;
 }
 
-static laves_result find_places(laves_context *context, const laves__samples *samples, const laves_domain *domain,
-                                double distance, laves_place *places, size_t capacity, size_t *count, laves_error *error) {
+laves_result laves__distant_places(laves_context *context, const laves__samples *samples, const laves_domain *domain,
+                                   double distance, laves_place *places, size_t capacity, size_t *count, laves_error *error) {
   laves_result result = LAVES_OK;
+  *count = 0;
   const size_t beyond = count_beyond(samples, distance);
   if (beyond >= NOTHING) return laves__fail(error, LAVES_ERROR_OPTION, "too many places are further apart than %g", distance);
   grid g = {.cell = 2 * distance, .bucket_count = 1, .capacity = beyond};
@@ -122,7 +123,7 @@ laves_result laves_check_distance(laves_context *context, const laves_mesh *mesh
   laves__samples samples = {0};
   laves_result result = laves__find_boundary(context, mesh, &boundary, error);
   if (result == LAVES_OK) result = laves__measure_distances(context, mesh, &boundary, domain, &samples, error);
-  if (result == LAVES_OK) result = find_places(context, &samples, domain, distance, places, capacity, count, error);
+  if (result == LAVES_OK) result = laves__distant_places(context, &samples, domain, distance, places, capacity, count, error);
   laves__samples_free(&samples);
   laves__boundary_free(&boundary);
   return result;

@@ -41,6 +41,11 @@ typedef struct laves__oracle {
    * how many there are. NULL: not available. */
   size_t (*sample)(const void *self, double spacing, laves__vec3 *points, size_t capacity);
 
+  /* Where the surface is made of flat faces, all of which bound the solid: their number, and the corners of each.
+   * 0 and NULL: it is not. */
+  size_t flat_face_count;
+  void (*flat_face)(const void *self, size_t face, laves__vec3 corners[3]);
+
   /* Up to `capacity` thin places, thinnest first; NULL: not available. */
   size_t (*thin_places)(const void *self, laves_thin_place *places, size_t capacity);
 

@@ -228,6 +228,13 @@ static int32_t tag(const void *self, laves__vec3 foot, uint32_t hint) {
   return s->tags && hint < s->face_count ? s->tags[hint] : 0;
 }
 
+static void flat_face(const void *self, size_t face, laves__vec3 corners[3]) {
+  const laves__triangle *t = &((const laves__surface *)self)->bvh.triangles[face];
+  corners[0] = t->a;
+  corners[1] = t->b;
+  corners[2] = t->c;
+}
+
 void laves__surface_oracle(laves__surface *s, laves__oracle *oracle) {
   oracle->self = s;
   oracle->is_distance = !s->open;
@@ -236,6 +243,10 @@ void laves__surface_oracle(laves__surface *s, laves__oracle *oracle) {
   oracle->side = side;
   oracle->tag = s->tags ? tag : NULL;
   oracle->sample = laves__surface_sample;
+  if (!s->open && !s->needs_winding) {
+    oracle->flat_face_count = s->face_count;
+    oracle->flat_face = flat_face;
+  }
   oracle->thin_places = laves__surface_thin_places;
   oracle->free = laves__surface_free;
 }

@@ -1,0 +1,156 @@
+/* The certificate: what a mesh is, stated from its final arrays alone.
+ *
+ *   hash -> check (counts, validity, topology, quality, distances) -> tiles by their shape -> window -> exceptions
+ *
+ * Nothing is taken over from the stages that made the mesh but what cannot be recomputed: which options were asked, which window
+ * is promised for them, and how many vertices were made how. Whether the promise holds is found here.
+ *
+ * The attained window contains every angle of the mesh, not only the computed values: it is widened by a bound of their error.
+ * With q the least volume-length ratio and u half a unit of rounding, an angle t of a tet has: area vectors of faces known to
+ * 8 u |e| |f| with |e| |f| / |e x f| <= 21 / q, so cos t to 700 u / q; sin t = 3/2 V l / (A B) >= 0.028 q^2; so t to 25000 u / q^3,
+ * which is 1.6e-10 / q^3 degrees. The margin is more than twice that. */
+#include <stdio.h>
+#include <string.h>
+
+#include "certify/certify.h"
+#include "certify/sha256.h"
+#include "io/file.h"
+
+static const uint32_t certify_cookie = 0x63657274;
+
+/* Degrees times the cube of the least volume-length ratio; see above. */
+#define MARGIN_FACTOR 4e-10
+/* Share of the mean edge from which on a boundary vertex counts as off the surface: far above what Newton's steps leave. */
+#define OFF_SURFACE_SHARE 1e-3
+/* Share of the mean edge from which on places count as distant: below it lies what flat triangles on a curved surface make. */
+#define DISTANT_SHARE 0.3
+
+laves_certify_options laves_certify_options_default(void) {
+  const laves_options asked = laves_options_default();
+  return (laves_certify_options){.distances = true,
+                                 .promised_max_dihedral = 180,
+                                 .min_dihedral = asked.min_dihedral,
+                                 .max_dihedral = asked.max_dihedral,
+                                 .volume_length = asked.volume_length,
+                                 .cookie = certify_cookie};
+}
+
+/* ---- what was asked ---- */
+
+static void copy_text(char *to, size_t capacity, const char *from) { snprintf(to, capacity, "%s", from); }
+
+/* The base name of a file, or an expression as far as there is room for it; cut between characters of UTF-8. */
+static void name_input(laves_certificate *c, const char *input, bool is_file) {
+  const char *slash = is_file ? strrchr(input, '/') : NULL;
+  copy_text(c->input_name, sizeof c->input_name, slash ? slash + 1 : input);
+  size_t end = strlen(c->input_name);
+  if (end + 1 < sizeof c->input_name) return;
+  while (end > 0 && (c->input_name[end - 1] & 0xc0) == 0x80) end--;
+  if (end > 0 && (c->input_name[end - 1] & 0x80)) end--;
+  c->input_name[end] = 0;
+}
+
+static void digest_text(const char *bytes, size_t length, char text[LAVES_HASH_CAPACITY]) {
+  laves__sha256 hash;
+  unsigned char digest[LAVES__SHA256_BYTES];
+  laves__sha256_start(&hash);
+  laves__sha256_add(&hash, bytes, length);
+  laves__sha256_finish(&hash, digest);
+  laves__sha256_text(digest, text);
+}
+
+/* Expressions have the format of that name; everything else came from a file. */
+static laves_result describe_input(laves_context *context, const laves_certify_options *options, laves_certificate *c,
+                                   laves_error *error) {
+  static const char *const kinds[] = {"surface", "implicit", "function"};
+  const laves_domain *domain = options->domain;
+  if (!domain) return LAVES_OK;
+  c->has_input = true;
+  copy_text(c->input_kind, sizeof c->input_kind, kinds[domain->info.kind]);
+  copy_text(c->input_format, sizeof c->input_format, domain->info.format ? domain->info.format : "");
+  if (!options->input) return LAVES_OK;
+  const bool is_file = strstr(c->input_format, "expression") == NULL;
+  name_input(c, options->input, is_file);
+  if (!is_file) {
+    digest_text(options->input, strlen(options->input), c->input_hash);
+    return LAVES_OK;
+  }
+  char *bytes;
+  size_t length;
+  const laves_result result = laves__file_read(context, options->input, &bytes, &length, error);
+  if (result != LAVES_OK) return result;
+  digest_text(bytes, length, c->input_hash);
+  laves__free(context, bytes, length + 1, 1);
+  return LAVES_OK;
+}
+
+static void note_making(const laves_certify_options *options, laves_certificate *c) {
+  const laves_report *report = options->report;
+  c->asked_min_dihedral = options->options ? options->options->min_dihedral : options->min_dihedral;
+  c->asked_max_dihedral = options->options ? options->options->max_dihedral : options->max_dihedral;
+  c->asked_volume_length = options->options ? options->options->volume_length : options->volume_length;
+  c->promised_min_dihedral = report ? report->promised_min_dihedral : options->promised_min_dihedral;
+  c->promised_max_dihedral = report ? report->promised_max_dihedral : options->promised_max_dihedral;
+  c->has_promise = c->promised_max_dihedral > 0 && (c->promised_min_dihedral > 0 || c->promised_max_dihedral < 180);
+  if (!c->has_promise) c->promised_min_dihedral = 0, c->promised_max_dihedral = 180;
+  if (!options->options || !report) return;
+  c->has_options = true;
+  c->options = *options->options;
+  c->size = report->size;
+  c->stuffed_vertices = report->stuffed_vertices;
+  c->relaxed_vertices = report->relaxed_vertices;
+  c->relaxed_max = report->relaxed_max;
+  c->pinches = report->pinches;
+  if (isnan(c->check.domain_volume) && report->volume > 0) c->check.domain_volume = report->volume;
+}
+
+/* ---- what is there ---- */
+
+static void find_window(laves_certificate *c) {
+  const laves_check *check = &c->check;
+  const double q = fmax(0, check->volume_length.min);
+  c->angle_margin = fmin(180, MARGIN_FACTOR / (q * q * q));
+  if (!isfinite(check->volume_length.min) || check->min_dihedral_tet < 0) c->angle_margin = 180;
+  c->attained_min_dihedral = fmax(0, check->min_dihedral.min - c->angle_margin);
+  c->attained_max_dihedral = fmin(180, check->max_dihedral.max + c->angle_margin);
+}
+
+static void explain_distances(const laves_domain *domain, laves_certificate *c) {
+  const laves_check *check = &c->check;
+  if (!check->has_distance) return;
+  if (isnan(check->to_surface_at_most))
+    copy_text(c->to_surface_reason, sizeof c->to_surface_reason,
+              domain->info.kind == LAVES_DOMAIN_SURFACE ? "no sample has a foot on the surface"
+                                                        : "the feet of samples are found by iteration, not exactly");
+  if (isnan(check->from_surface_at_most))
+    copy_text(c->from_surface_reason, sizeof c->from_surface_reason,
+              domain->info.kind == LAVES_DOMAIN_SURFACE
+                  ? "the surface is not closed or not clean, so where it bounds the solid is known at samples only"
+                  : "an implicit surface is sampled where it was found; what lies between is not known");
+  c->distance_asked = DISTANT_SHARE * check->edge_mean;
+  c->off_surface_asked = OFF_SURFACE_SHARE * check->edge_mean;
+}
+
+laves_result laves_certify(laves_context *context, const laves_mesh *mesh, const laves_certify_options *options,
+                           laves_certificate *certificate, laves_error *error) {
+  const laves_certify_options defaults = laves_certify_options_default();
+  if (!options) options = &defaults;
+  if (options->cookie != certify_cookie)
+    return laves__fail(error, LAVES_ERROR_OPTION, "the options do not come from laves_certify_options_default()");
+  laves_certificate *c = certificate;
+  laves__survey survey;
+  memset(c, 0, sizeof *c);
+  copy_text(c->version, sizeof c->version, laves_version());
+  const laves_domain *domain = options->domain;
+  laves_result result = laves__survey_mesh(context, mesh, options->distances ? domain : NULL, &c->check, &survey, error);
+  if (result != LAVES_OK) return result;
+  result = describe_input(context, options, c, error);
+  if (result == LAVES_OK) result = laves__mesh_digest(context, mesh, c->mesh_hash, error);
+  if (result == LAVES_OK) result = laves__find_tiles(context, mesh, c, error);
+  note_making(options, c);
+  find_window(c);
+  explain_distances(domain, c);
+  if (result == LAVES_OK) result = laves__list_exceptions(context, mesh, domain, &survey, c, error);
+  laves__survey_free(&survey);
+  return result;
+}

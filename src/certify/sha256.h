@@ -1,0 +1,23 @@
+/* SHA-256, for hashes that anyone can recompute with the tools at hand. */
+#ifndef LAVES_CERTIFY_SHA256_H
+#define LAVES_CERTIFY_SHA256_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum { LAVES__SHA256_BYTES = 32 };
+
+typedef struct laves__sha256 {
+  uint32_t state[8];
+  uint64_t length; /* bytes so far */
+  unsigned char block[64];
+} laves__sha256;
+
+void laves__sha256_start(laves__sha256 *hash);
+void laves__sha256_add(laves__sha256 *hash, const void *bytes, size_t count);
+void laves__sha256_finish(laves__sha256 *hash, unsigned char digest[LAVES__SHA256_BYTES]);
+
+/* 64 hexadecimal digits and NUL. */
+void laves__sha256_text(const unsigned char digest[LAVES__SHA256_BYTES], char text[65]);
+
+#endif

@@ -1,0 +1,240 @@
+/* Reads a certificate: JSON by jansson, then member by member by the table, each checked for its type and range.
+ *
+ * Files come from anywhere: their size is limited before parsing, and jansson limits depth itself (2048) and refuses repeated
+ * keys. Its memory comes from the C library, as it can only be told otherwise for the whole process; it is some fifty times the
+ * file at most, so the limit on the file bounds it. */
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "io/certificate_table.h"
+#include "io/file.h"
+
+enum { FILE_BYTES_MAX = 1 << 20 };
+/* JSON numbers beyond this are not exact in every reader. */
+#define INTEGER_MAX 9007199254740992.0
+
+typedef struct reader {
+  const char *path;
+  laves_certificate *certificate;
+  laves_error *error;
+} reader;
+
+static laves_result fail_member(const reader *r, const char *group, const char *name, const char *need) {
+  return laves__fail(r->error, LAVES_ERROR_INPUT, "%s: the member '%s%s%s' %s", r->path, group, group[0] ? "." : "", name, need);
+}
+
+/* ---- values ---- */
+
+static bool get_text(const json_t *value, char *to, size_t capacity) {
+  to[0] = 0;
+  if (json_is_null(value)) return true;
+  if (!json_is_string(value) || json_string_length(value) >= capacity || strlen(json_string_value(value)) != json_string_length(value))
+    return false;
+  memcpy(to, json_string_value(value), json_string_length(value) + 1);
+  return true;
+}
+
+static bool get_integer(const json_t *value, int64_t least, int64_t *to) {
+  if (!json_is_integer(value)) return false;
+  *to = (int64_t)json_integer_value(value);
+  return *to >= least && (double)*to <= INTEGER_MAX;
+}
+
+static bool get_count(const json_t *value, size_t *to) {
+  int64_t count = 0;
+  const bool right = get_integer(value, 0, &count);
+  *to = (size_t)count;
+  return right;
+}
+
+static bool get_number(const json_t *value, double *to) {
+  *to = json_is_number(value) ? json_number_value(value) : NAN;
+  return json_is_number(value) || json_is_null(value);
+}
+
+/* Item i of an array, or the value itself where only one is wanted; NULL when there is none. */
+static const json_t *item_of(const json_t *value, size_t i, size_t count) {
+  if (count == 1) return value;
+  return json_is_array(value) && json_array_size(value) == count ? json_array_get(value, i) : NULL;
+}
+
+static bool get_choice(const json_t *value, const char *const *names, int *to) {
+  if (!json_is_string(value)) return false;
+  for (int i = 0; names[i]; i++)
+    if (strcmp(json_string_value(value), names[i]) == 0) {
+      *to = i;
+      return true;
+    }
+  return false;
+}
+
+static bool get_value(const json_t *value, const laves__member *member, void *to) {
+  int choice = 0;
+  bool right = true;
+  switch (member->kind) {
+    case LAVES__MEMBER_TEXT:
+      return get_text(value, to, member->count);
+    case LAVES__MEMBER_COUNT:
+      for (size_t i = 0; i < member->count && right; i++) right = get_count(item_of(value, i, member->count), (size_t *)to + i);
+      return right;
+    case LAVES__MEMBER_INTEGER:
+      return get_integer(value, INT64_MIN, to);
+    case LAVES__MEMBER_NUMBER:
+      for (size_t i = 0; i < member->count && right; i++) right = get_number(item_of(value, i, member->count), (double *)to + i);
+      return right;
+    case LAVES__MEMBER_FLAG:
+      *(bool *)to = json_is_true(value);
+      return json_is_boolean(value);
+    case LAVES__MEMBER_ALIGN:
+      right = get_choice(value, laves__align_names, &choice);
+      *(laves_align *)to = (laves_align)choice;
+      return right;
+    case LAVES__MEMBER_METHOD:
+      right = get_choice(value, laves__method_names, &choice);
+      *(laves_method *)to = (laves_method)choice;
+      return right;
+  }
+  return false;
+}
+
+static const char *need_of(const laves__member *member) {
+  switch (member->kind) {
+    case LAVES__MEMBER_TEXT:
+      return "must be a text that is not too long, or null";
+    case LAVES__MEMBER_COUNT:
+      return member->count == 1 ? "must be a count" : "must be an array of counts, of the right length";
+    case LAVES__MEMBER_INTEGER:
+      return "must be a whole number";
+    case LAVES__MEMBER_NUMBER:
+      return member->count == 1 ? "must be a number or null" : "must be an array of numbers, of the right length";
+    case LAVES__MEMBER_FLAG:
+      return "must be true or false";
+    default:
+      return "must be one of the names in docs/certificate.md";
+  }
+}
+
+/* ---- groups ---- */
+
+static laves_result read_members(const reader *r, const char *group, const json_t *object) {
+  for (size_t i = 0; i < laves__certificate_member_count; i++) {
+    const laves__member *member = &laves__certificate_members[i];
+    if (strcmp(member->group, group) != 0) continue;
+    const json_t *value = json_object_get(object, member->name);
+    if (!value) return fail_member(r, group, member->name, "is missing");
+    if (!get_value(value, member, (char *)r->certificate + member->offset))
+      return fail_member(r, group, member->name, need_of(member));
+  }
+  return LAVES_OK;
+}
+
+static laves_result read_group(const reader *r, const laves__member_group *group, const json_t *root) {
+  const json_t *object = json_object_get(root, group->name);
+  if (group->flag && json_is_null(object)) return LAVES_OK;
+  if (!json_is_object(object)) return fail_member(r, "", group->name, "is missing, or is no object");
+  if (group->flag) *((bool *)((char *)r->certificate + group->flag)) = true;
+  return read_members(r, group->name, object);
+}
+
+/* ---- exceptions ---- */
+
+static int find_key(const json_t *value, const char *(*key)(int), int count) {
+  for (int i = 0; json_is_string(value) && i < count; i++)
+    if (strcmp(json_string_value(value), key(i)) == 0) return i;
+  return -1;
+}
+
+static const char *exception_key(int i) { return laves_exception_key((laves_exception_kind)i); }
+static const char *cause_key(int i) { return laves_cause_key((laves_cause)i); }
+
+static bool read_exception(const json_t *object, laves_exception *e) {
+  const json_t *place = json_object_get(object, "place");
+  const int kind = find_key(json_object_get(object, "kind"), exception_key, LAVES_EXCEPTION_COUNT);
+  const int cause = find_key(json_object_get(object, "cause"), cause_key, LAVES_CAUSE_COUNT);
+  if (kind < 0 || cause < 0) return false;
+  e->kind = (laves_exception_kind)kind;
+  e->cause = (laves_cause)cause;
+  for (size_t i = 0; i < 3; i++)
+    if (!get_number(item_of(place, i, 3), &e->place[i])) return false;
+  return get_number(json_object_get(object, "value"), &e->value) && get_number(json_object_get(object, "limit"), &e->limit) &&
+         get_integer(json_object_get(object, "index"), -1, &e->index) &&
+         get_number(json_object_get(object, "curvature_radius"), &e->curvature_radius);
+}
+
+static laves_result read_exceptions(const reader *r, const json_t *root) {
+  const json_t *object = json_object_get(root, "exceptions");
+  const json_t *counts = json_object_get(object, "counts"), *listed = json_object_get(object, "listed");
+  laves_certificate *c = r->certificate;
+  for (int i = 0; i < LAVES_EXCEPTION_COUNT; i++)
+    if (!get_count(json_object_get(counts, exception_key(i)), &c->exception_counts[i]))
+      return fail_member(r, "exceptions.counts", exception_key(i), "must be a count");
+  if (!json_is_array(listed) || json_array_size(listed) > LAVES_EXCEPTION_CAPACITY)
+    return fail_member(r, "exceptions", "listed", "must be an array that is not too long");
+  for (size_t i = 0; i < json_array_size(listed); i++) {
+    if (!read_exception(json_array_get(listed, i), &c->exceptions[i])) {
+      char name[32];
+      snprintf(name, sizeof name, "listed[%zu]", i);
+      return fail_member(r, "exceptions", name, "is no exception as docs/certificate.md tells");
+    }
+    c->exception_count++;
+  }
+  return LAVES_OK;
+}
+
+/* ---- all ---- */
+
+static laves_result read_root(const reader *r, const json_t *root) {
+  const json_t *kind = json_object_get(root, "certificate");
+  if (!json_is_string(kind) || strcmp(json_string_value(kind), "laves") != 0)
+    return laves__fail(r->error, LAVES_ERROR_INPUT, "%s: it is no certificate of a mesh: its member 'certificate' is not \"laves\"",
+                       r->path);
+  int64_t schema = 0;
+  if (!get_integer(json_object_get(root, "schema"), 1, &schema)) return fail_member(r, "", "schema", "must be a whole number");
+  if (schema != LAVES__CERTIFICATE_SCHEMA)
+    return laves__fail(r->error, LAVES_ERROR_INPUT, "%s: the certificate has schema %lld, and only %d is known here; use a newer laves",
+                       r->path, (long long)schema, LAVES__CERTIFICATE_SCHEMA);
+  if (!get_text(json_object_get(root, "version"), r->certificate->version, sizeof r->certificate->version))
+    return fail_member(r, "", "version", "must be a text that is not too long");
+  laves_result result = LAVES_OK;
+  for (size_t i = 0; i < laves__certificate_group_count && result == LAVES_OK; i++)
+    result = read_group(r, &laves__certificate_groups[i], root);
+  return result == LAVES_OK ? read_exceptions(r, root) : result;
+}
+
+/* Values of an earlier group may not be there: what they would say where nothing is known. */
+static void set_unknown(laves_certificate *certificate) {
+  memset(certificate, 0, sizeof *certificate);
+  certificate->check.domain_volume = NAN;
+  certificate->promised_max_dihedral = 180;
+  certificate->promise_holds = true;
+}
+
+static laves_result refuse_large(const char *path, laves_error *error) {
+  struct stat status;
+  if (stat(path, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > FILE_BYTES_MAX)
+    return laves__fail(error, LAVES_ERROR_INPUT, "%s: it is no certificate: it has more than %d bytes", path, FILE_BYTES_MAX);
+  return LAVES_OK;
+}
+
+laves_result laves_certificate_read(laves_context *context, const char *path, laves_certificate *certificate,
+                                    laves_error *error) {
+  char *bytes;
+  size_t length;
+  const reader r = {path, certificate, error};
+  set_unknown(certificate);
+  laves_result result = refuse_large(path, error);
+  if (result == LAVES_OK) result = laves__file_read(context, path, &bytes, &length, error);
+  if (result != LAVES_OK) return result;
+  json_error_t wrong;
+  json_t *root = json_loadb(bytes, length, JSON_REJECT_DUPLICATES, &wrong);
+  if (root)
+    result = read_root(&r, root);
+  else
+    result = laves__fail(error, LAVES_ERROR_INPUT, "%s:%d: it is no JSON: %s", path, wrong.line, wrong.text);
+  json_decref(root);
+  laves__free(context, bytes, length + 1, 1);
+  return result;
+}
