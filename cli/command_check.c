@@ -1,17 +1,19 @@
-/* laves check MESH [--surface INPUT]: is it valid, how good is it, how far from the surface. */
+/* laves check MESH [--surface INPUT]: is it valid, how good is it, how far from the surface; and whether a certificate says so.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "command.h"
 #include "input.h"
 #include "output.h"
 #include "session.h"
+#include "statement.h"
 #include "summary.h"
 #include "text.h"
 
-/* Distances are listed from this share of the mean edge on: below it lies what flat triangles on a curved surface make. */
-static const double listed_distance = 0.3;
+enum { DIFFERENCES_SAID = 20 };
 
 typedef struct place_list {
   laves_place *places;
@@ -21,10 +23,12 @@ typedef struct place_list {
 typedef struct check_run {
   laves_mesh *mesh;
   input surface;
-  laves_check check;
+  laves_certificate certificate;
   laves_options window; /* only its window is used */
   place_list outside, distant;
   bool has_check;
+  laves_difference differences[DIFFERENCES_SAID];
+  size_t difference_count; /* may exceed what was kept */
   double read_seconds, check_seconds;
 } check_run;
 
@@ -44,38 +48,63 @@ static laves_result read_mesh(session *run, check_run *all) {
   return result;
 }
 
+/* Takes the places of a kind from the certificate, which has a few of each. */
+static void take_places(const laves_certificate *certificate, laves_exception_kind kind, place_list *list) {
+  list->found = certificate->exception_counts[kind];
+  size_t taken = 0;
+  for (size_t i = 0; i < certificate->exception_count && taken < list->capacity; ++i) {
+    const laves_exception *e = &certificate->exceptions[i];
+    if (e->kind != kind) continue;
+    laves_place *place = &list->places[taken++];
+    *place = (laves_place){.value = e->value, .tet = e->index, .curvature_radius = e->curvature_radius};
+    memcpy(place->place, e->place, sizeof e->place);
+  }
+}
+
+/* More than a certificate lists is looked for anew. */
 static laves_result find_places(session *run, check_run *all) {
+  const laves_certificate *c = &all->certificate;
   if (!make_list(&all->outside, run->given->list) || !make_list(&all->distant, run->given->list)) {
     return session_fail(run, LAVES_ERROR_MEMORY, "no memory for a list of %lld places", (long long)run->given->list);
   }
-  laves_result result =
-      laves_check_window(run->context, all->mesh, all->surface.domain, all->window.min_dihedral, all->window.max_dihedral,
-                         all->window.volume_length, all->outside.places, all->outside.capacity, &all->outside.found, &run->error);
-  result = session_settle(run, result);
-  if (result != LAVES_OK || !all->check.has_distance) return result;
-  result = laves_check_distance(run->context, all->mesh, all->surface.domain, listed_distance * all->check.edge_mean,
-                                all->distant.places, all->distant.capacity, &all->distant.found, &run->error);
+  take_places(c, LAVES_EXCEPTION_OUTSIDE_ASKED, &all->outside);
+  take_places(c, LAVES_EXCEPTION_DISTANT, &all->distant);
+  laves_result result = LAVES_OK;
+  if (listed(&all->outside) > LAVES_PLACE_CAPACITY) {
+    result = laves_check_window(run->context, all->mesh, all->surface.domain, all->window.min_dihedral, all->window.max_dihedral,
+                                all->window.volume_length, all->outside.places, all->outside.capacity, &all->outside.found,
+                                &run->error);
+  }
+  if (result == LAVES_OK && listed(&all->distant) > LAVES_PLACE_CAPACITY) {
+    result = laves_check_distance(run->context, all->mesh, all->surface.domain, c->distance_asked, all->distant.places,
+                                  all->distant.capacity, &all->distant.found, &run->error);
+  }
+  return session_settle(run, result);
+}
+
+static laves_result certify(session *run, check_run *all) {
+  laves_certify_options options = laves_certify_options_default();
+  options.domain = all->surface.domain;
+  options.input = all->surface.text;
+  options.min_dihedral = all->window.min_dihedral;
+  options.max_dihedral = all->window.max_dihedral;
+  options.volume_length = all->window.volume_length;
+  return session_settle(run, laves_certify(run->context, all->mesh, &options, &all->certificate, &run->error));
+}
+
+/* Reads --certificate and holds it against the mesh. */
+static laves_result verify(session *run, check_run *all) {
+  laves_certificate stated;
+  const char *path = run->given->certificate;
+  if (!path) return LAVES_OK;
+  laves_result result = laves_certificate_read(run->context, path, &stated, &run->error);
+  if (result != LAVES_OK) return result;
+  result = laves_certificate_verify(run->context, all->mesh, all->surface.domain, all->surface.text, &stated, all->differences,
+                                    DIFFERENCES_SAID, &all->difference_count, &run->error);
   return session_settle(run, result);
 }
 
 /* ---- words ---- */
-
-static void say_distances(const check_run *all) {
-  const laves_check *check = &all->check;
-  const double edge = check->edge_mean;
-  text_buffer place;
-  text_say("  mesh to surface: max %.4g (%.3f edges) at %s, mean %.4g", check->to_surface_max, check->to_surface_max / edge,
-           text_place(&place, check->to_surface_place), check->to_surface_mean);
-  text_say("  surface to mesh: max %.4g (%.3f edges) at %s, mean %.4g", check->from_surface_max, check->from_surface_max / edge,
-           text_place(&place, check->from_surface_place), check->from_surface_mean);
-  if (!isnan(check->domain_volume)) {
-    text_say("  volume of the surface %.9g, of the mesh %+.3f %%", check->domain_volume,
-             100 * (check->volume / check->domain_volume - 1));
-  }
-  for (size_t i = 0; i < listed(&all->distant); ++i) {
-    text_say("    %.4g apart at %s", all->distant.places[i].value, text_place(&place, all->distant.places[i].place));
-  }
-}
 
 static void say_place(const laves_place *at) {
   text_buffer place;
@@ -102,16 +131,38 @@ static void say_window(const check_run *all) {
   for (size_t i = 0; i < listed(&all->outside); ++i) say_place(&all->outside.places[i]);
 }
 
+static void say_distant(const check_run *all) {
+  text_buffer place;
+  for (size_t i = 0; i < listed(&all->distant); ++i) {
+    text_say("    %.4g apart at %s", all->distant.places[i].value, text_place(&place, all->distant.places[i].place));
+  }
+}
+
+static void say_verified(const session *run, const check_run *all) {
+  const char *path = run->given->certificate;
+  if (!path) return;
+  if (all->difference_count == 0) {
+    text_say("%s: belongs to the mesh, and every figure %sholds", path,
+             all->surface.domain ? "" : "that needs no surface (--surface) ");
+    return;
+  }
+  text_say("%s: does NOT belong to the mesh", path);
+  for (size_t i = 0; i < all->difference_count && i < DIFFERENCES_SAID; ++i) text_say("  %s", all->differences[i].text);
+  if (all->difference_count > DIFFERENCES_SAID) text_say("  and %zu more", all->difference_count - DIFFERENCES_SAID);
+}
+
 static void say_check(const session *run, const check_run *all) {
-  const laves_check *check = &all->check;
+  const laves_check *check = &all->certificate.check;
   text_buffer tets, vertices, unused;
   text_say("%s: %s, %s, %s", text_base_name(run->given->input), text_plural(&tets, check->tets, "tet"),
            text_plural(&vertices, check->vertices, "vertex"), check->valid ? "valid" : "NOT VALID");
   summary_faults(check);
   if (check->unused_vertices) text_say("  %s in no tet (harmless)", text_plural(&unused, check->unused_vertices, "vertex"));
   summary_check(check);
+  statement_say(&all->certificate, true);
   say_window(all);
-  if (check->has_distance) say_distances(all);
+  say_distant(all);
+  say_verified(run, all);
   if (run->given->verbose) {
     text_buffer read, checked;
     text_say("  read %s, checked %s", text_seconds(&read, all->read_seconds), text_seconds(&checked, all->check_seconds));
@@ -133,6 +184,14 @@ static void write_places(json *out, const char *key, const place_list *list) {
   json_close(out);
 }
 
+static void write_differences(json *out, const session *run, const check_run *all) {
+  if (!run->given->certificate) return;
+  json_integer(out, "certificate_differences", (int64_t)all->difference_count);
+  json_open_array(out, "differences");
+  for (size_t i = 0; i < all->difference_count && i < DIFFERENCES_SAID; ++i) json_text(out, NULL, all->differences[i].text);
+  json_close(out);
+}
+
 static void check_json(json *out, const session *run, const void *facts) {
   const check_run *all = facts;
   json_text(out, "mesh", run->given->input);
@@ -141,14 +200,16 @@ static void check_json(json *out, const session *run, const void *facts) {
   char hash[33];
   laves_mesh_hash(all->mesh, hash);
   json_text(out, "hash", hash);
-  summary_check_json(out, &all->check);
-  if (all->check.has_distance) json_number(out, "domain_volume", all->check.domain_volume);
+  summary_check_json(out, &all->certificate.check);
+  statement_write_json(out, &all->certificate);
+  write_differences(out, run, all);
+  if (all->certificate.check.has_distance) json_number(out, "domain_volume", all->certificate.check.domain_volume);
   json_numbers(out, "window", (const double[2]){all->window.min_dihedral, all->window.max_dihedral}, 2);
   json_number(out, "window_volume_length", all->window.volume_length);
   json_integer(out, "outside_window", (int64_t)all->outside.found);
   write_places(out, "outside_window_places", &all->outside);
-  if (all->check.has_distance) {
-    json_number(out, "distant_from", listed_distance * all->check.edge_mean);
+  if (all->certificate.check.has_distance) {
+    json_number(out, "distant_from", all->certificate.distance_asked);
     json_integer(out, "distant", (int64_t)all->distant.found);
     write_places(out, "distant_places", &all->distant);
   }
@@ -167,21 +228,26 @@ static laves_result check_steps(session *run, check_run *all) {
     all->window.max_dihedral = given->window.values[1];
   }
   if (given->volume_length >= 0) all->window.volume_length = given->volume_length;
+  const char *write_to = given->write_certificate;
   laves_result result = outputs_check_json(run, given->input);
+  if (result == LAVES_OK && write_to) result = outputs_check_text(run, write_to, given->input);
   if (result == LAVES_OK) result = read_mesh(run, all);
   if (result == LAVES_OK && given->surface) result = input_open(run, given->surface, &all->surface);
   if (result != LAVES_OK) return result;
 
   const double start = progress_now();
-  result = session_settle(run, laves_check_mesh(run->context, all->mesh, all->surface.domain, &all->check, &run->error));
+  result = certify(run, all);
   if (result == LAVES_OK) result = find_places(run, all);
+  if (result == LAVES_OK) result = verify(run, all);
   all->check_seconds = progress_now() - start;
   all->has_check = result == LAVES_OK;
+  if (result == LAVES_OK && write_to) result = laves_certificate_write(run->context, &all->certificate, write_to, &run->error);
   if (result != LAVES_OK) return result;
 
   if (session_speaks(run)) say_check(run, all);
   const bool wished = given->window.given || given->volume_length >= 0;
-  return !all->check.valid || (wished && all->outside.found > 0) ? LAVES_TARGET_MISSED : LAVES_OK;
+  const bool missed = (wished && all->outside.found > 0) || all->difference_count > 0;
+  return !all->certificate.check.valid || missed ? LAVES_TARGET_MISSED : LAVES_OK;
 }
 
 int command_check(const settings *given) {

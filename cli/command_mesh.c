@@ -1,4 +1,4 @@
-/* laves mesh INPUT -o OUT: input -> generate -> check -> write -> summary, JSON. */
+/* laves mesh INPUT -o OUT: input -> generate -> certify -> write -> summary, JSON. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,6 +7,7 @@
 #include "input.h"
 #include "output.h"
 #include "session.h"
+#include "statement.h"
 #include "summary.h"
 #include "text.h"
 
@@ -19,9 +20,9 @@ typedef struct mesh_run {
   laves_options options;
   laves_mesh *mesh;
   laves_report report;
-  laves_check check;
-  bool has_check;
-  double check_seconds;
+  laves_certificate certificate;
+  bool has_certificate;
+  double certify_seconds;
 } mesh_run;
 
 static laves_options make_options(const settings *given) {
@@ -54,14 +55,19 @@ static bool wish_missed(const settings *given, const mesh_run *all) {
          count_missed(given->vertices, laves_mesh_vertex_count(all->mesh));
 }
 
-static laves_result check_mesh(session *run, mesh_run *all) {
+static laves_result certify(session *run, mesh_run *all) {
   const double start = progress_now();
-  laves_result result = laves_check_mesh(run->context, all->mesh, NULL, &all->check, &run->error);
+  laves_certify_options options = laves_certify_options_default();
+  options.domain = all->in.domain;
+  options.input = all->in.text;
+  options.options = &all->options;
+  options.report = &all->report;
+  laves_result result = laves_certify(run->context, all->mesh, &options, &all->certificate, &run->error);
   result = session_settle(run, result);
-  all->has_check = result == LAVES_OK;
-  all->check_seconds = progress_now() - start;
-  if (all->has_check && !all->check.valid) {
-    summary_faults(&all->check);
+  all->has_certificate = result == LAVES_OK;
+  all->certify_seconds = progress_now() - start;
+  if (all->has_certificate && !all->certificate.check.valid) {
+    summary_faults(&all->certificate.check);
     return session_fail(run, LAVES_ERROR_INTERNAL, "the mesh made is not valid, so it was not written; please report this input");
   }
   return result;
@@ -74,22 +80,19 @@ static void say_stages(const mesh_run *all) {
     text_say("  %-12s %10s %10s cpu", all->report.stages[i].name, text_seconds(&wall, all->report.stages[i].wall_seconds),
              text_seconds(&cpu, all->report.stages[i].cpu_seconds));
   }
-  text_say("  check        %10s", text_seconds(&wall, all->check_seconds));
+  text_say("  certify      %10s", text_seconds(&wall, all->certify_seconds));
   text_say("  write        %10s", text_seconds(&wall, all->plan.seconds));
 }
 
 static void say_mesh(const session *run, const mesh_run *all) {
   text_buffer tets, vertices, time, memory;
   summary_input(&all->in, run->given->verbose);
-  text_say("%s, %s, size %.4g, %s, %s", text_plural(&tets, all->check.tets, "tet"),
-           text_plural(&vertices, all->check.vertices, "vertex"), all->report.size,
+  text_say("%s, %s, size %.4g, %s, %s", text_plural(&tets, laves_mesh_tet_count(all->mesh), "tet"),
+           text_plural(&vertices, laves_mesh_vertex_count(all->mesh), "vertex"), all->report.size,
            text_seconds(&time, progress_now() - run->start), text_bytes(&memory, session_peak_bytes()));
-  summary_check(&all->check);
-  if (all->report.outside_window > 0) {
-    text_buffer outside;
-    text_say("  %s outside the window %g .. %g%s or below volume-length %g",
-             text_plural(&outside, all->report.outside_window, "tet"), all->options.min_dihedral, all->options.max_dihedral,
-             text_degree(), all->options.volume_length);
+  if (all->has_certificate) {
+    summary_check(&all->certificate.check);
+    statement_say(&all->certificate, false);
   }
   if (run->given->verbose) say_stages(all);
   for (int i = 0; i < all->report.warning_count; ++i) text_warning("%s", all->report.warnings[i]);
@@ -101,6 +104,7 @@ static laves_result mesh_steps(session *run, mesh_run *all) {
   char fallback[PATH_CAPACITY];
   input_default_output(given->input, given->format, fallback, sizeof fallback);
   laves_result result = outputs_plan(run, fallback, given->input, &all->plan);
+  if (result == LAVES_OK) result = outputs_plan_certificate(run, given->input, &all->plan);
   if (result == LAVES_OK) result = input_open(run, given->input, &all->in);
   if (result != LAVES_OK) return result;
 
@@ -111,8 +115,8 @@ static laves_result mesh_steps(session *run, mesh_run *all) {
 
   const bool missed = wish_missed(given, all);
   result = LAVES_OK;
-  if (session_speaks(run) || given->json) result = check_mesh(run, all);
-  if (result == LAVES_OK) result = outputs_write(run, all->mesh, &all->plan);
+  if (all->plan.certificate[0]) result = certify(run, all);
+  if (result == LAVES_OK) result = outputs_write(run, all->mesh, all->has_certificate ? &all->certificate : NULL, &all->plan);
   if (result == LAVES_OK && session_speaks(run)) say_mesh(run, all);
   return result == LAVES_OK && missed ? LAVES_TARGET_MISSED : result;
 }
@@ -146,7 +150,7 @@ static void write_times(json *out, const session *run, const mesh_run *all) {
   json_open_object(out, "seconds");
   json_number(out, "read", all->in.seconds);
   write_stages(out, &all->report, false);
-  json_number(out, "check", all->check_seconds);
+  json_number(out, "check", all->certify_seconds);
   json_number(out, "write", all->plan.seconds);
   json_number(out, "total", progress_now() - run->start);
   json_close(out);
@@ -195,8 +199,16 @@ static void mesh_json(json *out, const session *run, const void *facts) {
   if (all->in.text) input_write_json(out, "input", &all->in);
   if (all->options.cookie) write_options(out, run->given, &all->options);
   if (all->mesh) write_report(out, all);
-  if (all->has_check) summary_check_json(out, &all->check);
+  if (all->has_certificate) {
+    summary_check_json(out, &all->certificate.check);
+    statement_write_json(out, &all->certificate);
+  } else if (all->mesh) {
+    json_integer(out, "tets", (int64_t)laves_mesh_tet_count(all->mesh));
+    json_integer(out, "vertices", (int64_t)laves_mesh_vertex_count(all->mesh));
+    json_integer(out, "faces", (int64_t)laves_mesh_face_count(all->mesh));
+  }
   outputs_write_json(out, &all->plan);
+  json_text(out, "certificate", all->plan.certificate_bytes > 0 ? all->plan.certificate : NULL);
   if (all->mesh) write_times(out, run, all);
   json_open_array(out, "warnings");
   for (int i = 0; i < all->report.warning_count; ++i) json_text(out, NULL, all->report.warnings[i]);

@@ -15,15 +15,18 @@ const command commands[] = {
     {"mesh", "INPUT", "fill a solid with nearly regular tetrahedra",
      "INPUT is a triangle surface (STL, OBJ, PLY, OFF; clean or dirty), a Lua script (.lua), or an expression in quotes.\n"
      "A name that exists as a file is a file. The mesh goes to every --output; without one, to INPUT's base name with .vtu\n"
-     "in the current folder (mesh.vtu for an expression). Existing outputs are replaced once the new ones are complete.",
+     "in the current folder (mesh.vtu for an expression). Existing outputs are replaced once the new ones are complete.\n"
+     "A certificate, which states and locates what the mesh is, goes beside the first output.",
      "laves mesh bunny.obj -o bunny.vtu\n"
      "laves mesh bunny.obj --tets 500k -o bunny.msh -o bunny.vtu\n"
      "laves mesh 'sphere(1) - cylinder{r=0.4}' --size 0.05 -o bead.mesh\n",
      MESH, command_mesh},
     {"check", "MESH", "say whether a mesh is valid and how good it is",
      "MESH is a tetrahedral mesh of any program (VTU, Gmsh 2.2 and 4.1, Medit, TetGen). Exit code 0: valid; 2: it cannot be\n"
-     "read; 3: it is not valid, or a window asked for with --window or --volume-length is missed.",
+     "read; 3: it is not valid, a window asked for with --window or --volume-length is missed, or --certificate does not\n"
+     "belong to it.",
      "laves check bunny.vtu --surface bunny.obj\n"
+     "laves check bunny.vtu --certificate bunny.certificate.json\n"
      "laves check other.msh --window 20,150 --list 10\n",
      CHECK, command_check},
     {"info", "INPUT", "say what an input is, what is wrong with it, and what meshing will cost",
@@ -122,6 +125,13 @@ const option option_rows[] = {
      "compression of VTU, 0 none to 9 smallest"},
     {"boundary", 0, MESH, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(boundary), 0,
      "also write the boundary surface (.stl, .obj, .ply, .off)"},
+    {"certificate", 0, MESH, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0,
+     "the first output's name with .certificate.json for its extension", MEMBER(certificate), 0,
+     "where the certificate goes (docs/certificate.md); none: write none and leave the final check out"},
+    {"certificate", 0, CHECK, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(certificate), 0,
+     "verify that mesh and certificate belong together, figure by figure"},
+    {"write-certificate", 0, CHECK, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(write_certificate), 0,
+     "write a certificate of the mesh"},
     {"json", 0, DATA, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(json), 0,
      "write all facts as JSON (docs/json.md); - is the standard output"},
 

@@ -75,7 +75,7 @@ static laves_result tiling_steps(session *run, tiling_run *all) {
   result = session_settle(run, laves_check_mesh(run->context, all->mesh, NULL, &all->check, &run->error));
   if (result != LAVES_OK) return result;
   all->has_check = true;
-  result = outputs_write(run, all->mesh, &all->plan);
+  result = outputs_write(run, all->mesh, NULL, &all->plan);
   if (result == LAVES_OK && session_speaks(run)) say_tiling(all);
   return result;
 }

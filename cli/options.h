@@ -34,8 +34,9 @@ typedef struct settings {
   const char *input; /* NULL where the command takes none */
   option_texts outputs;
   const char *boundary, *json, *surface; /* NULL: not given */
-  double size, relative_size;            /* 0: not given */
-  int64_t tets, vertices;                /* 0: not given */
+  const char *certificate, *write_certificate;
+  double size, relative_size; /* 0: not given */
+  int64_t tets, vertices;     /* 0: not given */
   option_alignment alignment;
   bool no_improve, ascii, quiet, verbose;
   option_numbers window; /* lowest, highest dihedral angle */

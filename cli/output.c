@@ -62,6 +62,37 @@ static laves_result add(session *run, const char *path, bool surface_only, outpu
   return LAVES_OK;
 }
 
+laves_result outputs_check_text(session *run, const char *path, const char *source) {
+  return check_target(run, path, source, true);
+}
+
+/* The name without its extension, and ".certificate.json". */
+static bool name_certificate(const char *mesh, char *path, size_t size) {
+  const char *base = text_base_name(mesh), *dot = strrchr(base, '.');
+  const size_t stem = dot && dot != base ? (size_t)(dot - mesh) : strlen(mesh);
+  const int length = snprintf(path, size, "%.*s.certificate.json", (int)stem, mesh);
+  return length > 0 && (size_t)length < size;
+}
+
+laves_result outputs_plan_certificate(session *run, const char *source, outputs *plan) {
+  const char *asked = run->given->certificate;
+  if (plan->count == 0 || (asked && strcmp(asked, "none") == 0)) return LAVES_OK;
+  const size_t size = sizeof plan->certificate;
+  if (asked ? (size_t)snprintf(plan->certificate, size, "%s", asked) >= size
+            : !name_certificate(plan->items[0].path, plan->certificate, size)) {
+    return session_fail(run, LAVES_ERROR_WRITE, "the name of the certificate is too long");
+  }
+  for (int i = 0; i < plan->count; ++i) {
+    if (strcmp(plan->items[i].path, plan->certificate) == 0) {
+      return session_fail(run, LAVES_ERROR_OPTION, "'%.200s' is named twice", plan->certificate);
+    }
+  }
+  if (run->given->json && strcmp(run->given->json, plan->certificate) == 0) {
+    return session_fail(run, LAVES_ERROR_OPTION, "'%.200s' is named twice", plan->certificate);
+  }
+  return check_target(run, plan->certificate, source, true);
+}
+
 laves_result outputs_check_json(session *run, const char *source) {
   const char *path = run->given->json;
   if (!path || strcmp(path, "-") == 0) return LAVES_OK;
@@ -104,7 +135,7 @@ static double written_bytes(const output *item) {
   return sum;
 }
 
-laves_result outputs_write(session *run, const laves_mesh *mesh, outputs *plan) {
+laves_result outputs_write(session *run, const laves_mesh *mesh, const laves_certificate *certificate, outputs *plan) {
   const double start = progress_now();
   laves_result result = LAVES_OK;
   for (int i = 0; result == LAVES_OK && i < plan->count; ++i) {
@@ -118,6 +149,10 @@ laves_result outputs_write(session *run, const laves_mesh *mesh, outputs *plan) 
     progress_clear(&run->bar);
     if (result == LAVES_OK) item->bytes = written_bytes(item);
   }
+  if (result == LAVES_OK && certificate && plan->certificate[0]) {
+    result = laves_certificate_write(run->context, certificate, plan->certificate, &run->error);
+    if (result == LAVES_OK) plan->certificate_bytes = file_bytes(plan->certificate);
+  }
   plan->seconds = progress_now() - start;
   return result;
 }
@@ -128,6 +163,7 @@ void outputs_say(const outputs *plan) {
     text_say("wrote %s (%s, %s)", plan->items[i].path, laves_format_name(plan->items[i].format),
              text_bytes(&bytes, plan->items[i].bytes));
   }
+  if (plan->certificate_bytes > 0) text_say("wrote %s", plan->certificate);
 }
 
 void outputs_write_json(json *out, const outputs *plan) {

@@ -15,7 +15,9 @@ typedef struct output {
 typedef struct outputs {
   output items[OUTPUT_CAPACITY + 1]; /* room for --boundary behind the --output ones */
   int count;
-  double seconds; /* to write them */
+  char certificate[PATH_CAPACITY]; /* where it goes; empty: none is written */
+  double certificate_bytes;        /* 0 before it is written */
+  double seconds;                  /* to write them */
 } outputs;
 
 /* Decides paths and formats and makes sure, as far as can be known, that the files and --json can be written.
@@ -23,10 +25,17 @@ typedef struct outputs {
  * @param source    the input, which must not be overwritten, or NULL */
 laves_result outputs_plan(session *run, const char *fallback, const char *source, outputs *plan);
 
+/* Decides where the certificate goes: to --certificate, else beside the first output; nowhere when that is "none". */
+laves_result outputs_plan_certificate(session *run, const char *source, outputs *plan);
+
+/* Makes sure that a file of words (JSON, a certificate) can be written. */
+laves_result outputs_check_text(session *run, const char *path, const char *source);
+
 /* Only the check of --json, for commands without other outputs. */
 laves_result outputs_check_json(session *run, const char *source);
 
-laves_result outputs_write(session *run, const laves_mesh *mesh, outputs *plan);
+/* @param certificate  NULL: none; written last, so that one that is there speaks of meshes that are there */
+laves_result outputs_write(session *run, const laves_mesh *mesh, const laves_certificate *certificate, outputs *plan);
 void outputs_say(const outputs *plan);
 /* The member "outputs". */
 void outputs_write_json(json *out, const outputs *plan);

@@ -1,0 +1,78 @@
+/* The statement on a mesh in words and in the JSON of a run. */
+#include "statement.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "text.h"
+
+static void say_distance(const char *way, double max, double at_most, double mean, const double place[3], double edge) {
+  text_buffer where;
+  char bound[60] = "";
+  if (isfinite(at_most)) snprintf(bound, sizeof bound, ", surely below %.4g", at_most);
+  text_say("  %s: max %.4g (%.3f edges) at %s%s, mean %.4g", way, max, max / edge, text_place(&where, place), bound, mean);
+}
+
+static void say_distances(const laves_check *check) {
+  say_distance("mesh to surface", check->to_surface_max, check->to_surface_at_most, check->to_surface_mean,
+               check->to_surface_place, check->edge_mean);
+  say_distance("surface to mesh", check->from_surface_max, check->from_surface_at_most, check->from_surface_mean,
+               check->from_surface_place, check->edge_mean);
+  if (!isnan(check->domain_volume))
+    text_say("  volume of the surface %.9g, of the mesh %+.3f %%", check->domain_volume,
+             100 * (check->volume / check->domain_volume - 1));
+}
+
+/* "2 thin, 1 crease" over the listed ones. */
+static const char *causes_of(const laves_certificate *c, laves_exception_kind kind, char *text, size_t size) {
+  text[0] = '\0';
+  for (int cause = 1; cause < LAVES_CAUSE_COUNT; ++cause) {
+    int count = 0;
+    for (size_t i = 0; i < c->exception_count; ++i) {
+      count += c->exceptions[i].kind == kind && (int)c->exceptions[i].cause == cause;
+    }
+    const size_t used = strlen(text);
+    if (count) snprintf(text + used, size - used, "%s%d %s", used ? ", " : " (", count, laves_cause_key((laves_cause)cause));
+  }
+  if (text[0]) strncat(text, c->exception_counts[kind] > LAVES_PLACE_CAPACITY ? " among the worst)" : ")", size - strlen(text) - 1);
+  return text;
+}
+
+static void say_exceptions(const laves_certificate *c, bool lists) {
+  char causes[160];
+  text_buffer count;
+  for (int kind = LAVES_EXCEPTION_OUTSIDE_PROMISED; kind < LAVES_EXCEPTION_COUNT; ++kind) {
+    if (c->exception_counts[kind] == 0 || kind == LAVES_EXCEPTION_THIN) continue;
+    if (lists && (kind == LAVES_EXCEPTION_OUTSIDE_ASKED || kind == LAVES_EXCEPTION_DISTANT)) continue;
+    text_say("  %s %s%s", text_count(&count, c->exception_counts[kind]), laves_exception_text((laves_exception_kind)kind),
+             causes_of(c, (laves_exception_kind)kind, causes, sizeof causes));
+  }
+}
+
+void statement_say(const laves_certificate *c, bool lists) {
+  const double share = c->check.tets ? 100 * (double)c->lattice_tets / (double)c->check.tets : 0;
+  text_say("  %.1f %% exact tiles", share);
+  if (c->check.has_distance) say_distances(&c->check);
+  if (c->has_promise) {
+    text_say("  promised %.6g .. %.6g%s: %s", c->promised_min_dihedral, c->promised_max_dihedral, text_degree(),
+             c->promise_holds ? "holds" : "BROKEN");
+  }
+  say_exceptions(c, lists);
+}
+
+static void write_exceptions(json *out, const laves_certificate *c) {
+  json_open_object(out, "exceptions");
+  for (int kind = 0; kind < LAVES_EXCEPTION_COUNT; ++kind) {
+    json_integer(out, laves_exception_key((laves_exception_kind)kind), (int64_t)c->exception_counts[kind]);
+  }
+  json_close(out);
+}
+
+void statement_write_json(json *out, const laves_certificate *c) {
+  json_text(out, "sha256", c->mesh_hash);
+  json_integer(out, "exact_tets", (int64_t)c->lattice_tets);
+  json_numbers(out, "attained", (const double[2]){c->attained_min_dihedral, c->attained_max_dihedral}, 2);
+  json_boolean(out, "promise_holds", c->promise_holds);
+  write_exceptions(out, c);
+}

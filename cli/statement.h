@@ -1,0 +1,15 @@
+/* The statement on a mesh in words and in the JSON of a run: what its certificate says. */
+#ifndef LAVES_CLI_STATEMENT_H
+#define LAVES_CLI_STATEMENT_H
+
+#include "json.h"
+#include "laves/laves.h"
+
+/* Tiles, distances, promise, and one line for each kind of exception.
+ * @param lists  the caller lists tets outside the asked window and distant places itself */
+void statement_say(const laves_certificate *certificate, bool lists);
+
+/* The members that a statement adds to those of a checked mesh. */
+void statement_write_json(json *out, const laves_certificate *certificate);
+
+#endif
