@@ -11,3 +11,8 @@ foreach(referee meshio gmsh tetgen)
     COMMAND ${CMAKE_CURRENT_LIST_DIR}/written_by_${referee} $<TARGET_FILE:count_mesh>)
   set_tests_properties(referee/read_with_${referee} referee/written_by_${referee} PROPERTIES LABELS referee SKIP_RETURN_CODE 77)
 endforeach()
+# Exact arithmetic in another language has the second word on certificates, and refuses forged ones.
+if(TARGET laves-program)
+  add_test(NAME referee/certificates COMMAND ${CMAKE_CURRENT_LIST_DIR}/certificates $<TARGET_FILE:laves-program>)
+  set_tests_properties(referee/certificates PROPERTIES LABELS referee)
+endif()
