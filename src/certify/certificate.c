@@ -7,8 +7,8 @@
  *
  * The attained window contains every angle of the mesh, not only the computed values: it is widened by a bound of their error.
  * With q the least volume-length ratio and u half a unit of rounding, an angle t of a tet has: area vectors of faces known to
- * 8 u |e| |f| with |e| |f| / |e x f| <= 21 / q, so cos t to 700 u / q; sin t = 3/2 V l / (A B) >= 0.028 q^2; so t to 25000 u / q^3,
- * which is 1.6e-10 / q^3 degrees. The margin is more than twice that. */
+ * 8 u |e| |f| with |e| |f| / |e x f| <= 21 / q, so cos t to 700 u / q; sin t = 3/2 V l / (A B) >= 0.028 q^2; so t to 25000 u /
+ * q^3, which is 1.6e-10 / q^3 degrees. The margin is more than twice that. */
 #include <stdio.h>
 #include <string.h>
 

@@ -148,9 +148,8 @@ static laves_result list_window(const listing *l, laves_exception_kind kind, con
     return LAVES_OK;
   laves_place places[LAVES_PLACE_CAPACITY];
   size_t count;
-  const laves_result result =
-      laves_check_window(l->context, l->mesh, l->domain, w->min_dihedral, w->max_dihedral, w->volume_length, places,
-                         LAVES_PLACE_CAPACITY, &count, error);
+  const laves_result result = laves_check_window(l->context, l->mesh, l->domain, w->min_dihedral, w->max_dihedral,
+                                                 w->volume_length, places, LAVES_PLACE_CAPACITY, &count, error);
   if (result != LAVES_OK) return result;
   l->c->exception_counts[kind] = count;
   for (size_t i = 0; i < at_most_listed(count); i++) {

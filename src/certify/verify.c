@@ -107,7 +107,8 @@ static bool needs_surface(laves_exception_kind kind) {
 
 /* The next listed exception from number `i` on that can be compared; their count when there is none. */
 static size_t next_listed(const comparing *c, const laves_certificate *of, size_t i) {
-  while (i < of->exception_count && needs_surface(of->exceptions[i].kind) && !(c->has_surface && c->stated->check.has_distance)) i++;
+  while (i < of->exception_count && needs_surface(of->exceptions[i].kind) && !(c->has_surface && c->stated->check.has_distance))
+    i++;
   return i;
 }
 

@@ -7,38 +7,43 @@ const char *const laves__method_names[] = {"auto", "snap", "stuff", NULL};
 #define FLAG_AT(member) offsetof(laves_certificate, member)
 
 const laves__member_group laves__certificate_groups[] = {
-    {"mesh", 0},          {"validity", 0},      {"topology", 0},
-    {"measures", 0},      {"min_dihedral", 0},  {"max_dihedral", 0},
-    {"radius_ratio", 0},  {"radius_edge", 0},   {"volume_length", 0},
-    {"tiles", 0},         {"window", 0},        {"promise", FLAG_AT(has_promise)},
-    {"asked", 0},         {"distance", FLAG_AT(check.has_distance)}, {"input", FLAG_AT(has_input)},
+    {"mesh", 0},
+    {"validity", 0},
+    {"topology", 0},
+    {"measures", 0},
+    {"min_dihedral", 0},
+    {"max_dihedral", 0},
+    {"radius_ratio", 0},
+    {"radius_edge", 0},
+    {"volume_length", 0},
+    {"tiles", 0},
+    {"window", 0},
+    {"promise", FLAG_AT(has_promise)},
+    {"asked", 0},
+    {"distance", FLAG_AT(check.has_distance)},
+    {"input", FLAG_AT(has_input)},
     {"making", FLAG_AT(has_options)},
 };
 const size_t laves__certificate_group_count = LAVES__COUNT_OF(laves__certificate_groups);
 
 #define ROW(group, name, kind, proof, member, count) \
-  {group, name, LAVES__MEMBER_##kind, LAVES__PROOF_##proof, offsetof(laves_certificate, member), count}
+  { group, name, LAVES__MEMBER_##kind, LAVES__PROOF_##proof, offsetof(laves_certificate, member), count }
 #define TEXT(group, name, proof, member) ROW(group, name, TEXT, proof, member, sizeof((laves_certificate *)0)->member)
 #define COUNT(group, name, member) ROW(group, name, COUNT, EXACT, check.member, 1)
 /* A quality: its worst value, the tet and place of it, and the statistic over all tets. */
-#define QUALITY(name, worst, tet_member, place_member, best)                    \
-  ROW(#name, "worst", NUMBER, CLOSE, check.name.worst, 1),                      \
-      ROW(#name, "tet", INTEGER, EXACT, check.tet_member, 1),                   \
-      ROW(#name, "place", NUMBER, LENGTH, check.place_member, 3),               \
-      ROW(#name, "best", NUMBER, CLOSE, check.name.best, 1),                    \
-      ROW(#name, "mean", NUMBER, CLOSE, check.name.mean, 1),                    \
-      ROW(#name, "deviation", NUMBER, NONE, check.name.deviation, 1)
+#define QUALITY(name, worst, tet_member, place_member, best)                                                             \
+  ROW(#name, "worst", NUMBER, CLOSE, check.name.worst, 1), ROW(#name, "tet", INTEGER, EXACT, check.tet_member, 1),       \
+      ROW(#name, "place", NUMBER, LENGTH, check.place_member, 3), ROW(#name, "best", NUMBER, CLOSE, check.name.best, 1), \
+      ROW(#name, "mean", NUMBER, CLOSE, check.name.mean, 1), ROW(#name, "deviation", NUMBER, NONE, check.name.deviation, 1)
 
 /* Pairs are two members that stand side by side. */
-_Static_assert(offsetof(laves_certificate, attained_max_dihedral) ==
-                       offsetof(laves_certificate, attained_min_dihedral) + sizeof(double) &&
-                   offsetof(laves_certificate, promised_max_dihedral) ==
-                       offsetof(laves_certificate, promised_min_dihedral) + sizeof(double) &&
-                   offsetof(laves_certificate, asked_max_dihedral) ==
-                       offsetof(laves_certificate, asked_min_dihedral) + sizeof(double) &&
-                   offsetof(laves_certificate, options.max_dihedral) ==
-                       offsetof(laves_certificate, options.min_dihedral) + sizeof(double),
-               "windows are pairs");
+_Static_assert(
+    offsetof(laves_certificate, attained_max_dihedral) == offsetof(laves_certificate, attained_min_dihedral) + sizeof(double) &&
+        offsetof(laves_certificate, promised_max_dihedral) ==
+            offsetof(laves_certificate, promised_min_dihedral) + sizeof(double) &&
+        offsetof(laves_certificate, asked_max_dihedral) == offsetof(laves_certificate, asked_min_dihedral) + sizeof(double) &&
+        offsetof(laves_certificate, options.max_dihedral) == offsetof(laves_certificate, options.min_dihedral) + sizeof(double),
+    "windows are pairs");
 
 const laves__member laves__certificate_members[] = {
     TEXT("mesh", "sha256", EXACT, mesh_hash),

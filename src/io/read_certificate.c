@@ -31,7 +31,8 @@ static laves_result fail_member(const reader *r, const char *group, const char *
 static bool get_text(const json_t *value, char *to, size_t capacity) {
   to[0] = 0;
   if (json_is_null(value)) return true;
-  if (!json_is_string(value) || json_string_length(value) >= capacity || strlen(json_string_value(value)) != json_string_length(value))
+  if (!json_is_string(value) || json_string_length(value) >= capacity ||
+      strlen(json_string_value(value)) != json_string_length(value))
     return false;
   memcpy(to, json_string_value(value), json_string_length(value) + 1);
   return true;
@@ -189,13 +190,14 @@ static laves_result read_exceptions(const reader *r, const json_t *root) {
 static laves_result read_root(const reader *r, const json_t *root) {
   const json_t *kind = json_object_get(root, "certificate");
   if (!json_is_string(kind) || strcmp(json_string_value(kind), "laves") != 0)
-    return laves__fail(r->error, LAVES_ERROR_INPUT, "%s: it is no certificate of a mesh: its member 'certificate' is not \"laves\"",
-                       r->path);
+    return laves__fail(r->error, LAVES_ERROR_INPUT,
+                       "%s: it is no certificate of a mesh: its member 'certificate' is not \"laves\"", r->path);
   int64_t schema = 0;
   if (!get_integer(json_object_get(root, "schema"), 1, &schema)) return fail_member(r, "", "schema", "must be a whole number");
   if (schema != LAVES__CERTIFICATE_SCHEMA)
-    return laves__fail(r->error, LAVES_ERROR_INPUT, "%s: the certificate has schema %lld, and only %d is known here; use a newer laves",
-                       r->path, (long long)schema, LAVES__CERTIFICATE_SCHEMA);
+    return laves__fail(r->error, LAVES_ERROR_INPUT,
+                       "%s: the certificate has schema %lld, and only %d is known here; use a newer laves", r->path,
+                       (long long)schema, LAVES__CERTIFICATE_SCHEMA);
   if (!get_text(json_object_get(root, "version"), r->certificate->version, sizeof r->certificate->version))
     return fail_member(r, "", "version", "must be a text that is not too long");
   laves_result result = LAVES_OK;
