@@ -115,6 +115,22 @@ static laves_result stuff_everything(run *r) {
   return stuff(r);
 }
 
+static bool is_empty(const run *r) {
+  int64_t vertices, tets;
+  laves__assemble_estimate(&r->lattice, &r->layer, &vertices, &tets);
+  return tets == 0;
+}
+
+/* Whether stuffing may take the place of snapping. */
+static bool may_mend(const run *r) { return r->guarantee && r->options->method == LAVES_METHOD_AUTO; }
+
+/* The boundary in the way that was asked for. Where snapping finds a solid too thin for any tet, stuffing may find some. */
+static laves_result conform(run *r) {
+  if (r->options->method == LAVES_METHOD_STUFF) return stuff_everything(r);
+  const laves_result result = snap(r);
+  return result == LAVES_OK && may_mend(r) && is_empty(r) ? stuff_everything(r) : result;
+}
+
 static laves_result nothing_resolved(const run *r) {
   return laves__fail(
       r->error, LAVES_ERROR_INPUT,
@@ -128,7 +144,7 @@ static laves_result make_boundary(run *r) {
   for (int correction = 0;; correction++) {
     laves_result result = make_background(r);
     if (result == LAVES_OK) result = classify(r);
-    if (result == LAVES_OK) result = r->options->method == LAVES_METHOD_STUFF ? stuff_everything(r) : snap(r);
+    if (result == LAVES_OK) result = conform(r);
     if (result != LAVES_OK) return result;
     int64_t vertices, tets;
     laves__assemble_estimate(&r->lattice, &r->layer, &vertices, &tets);
@@ -187,11 +203,14 @@ static laves_result mend_promise(run *r) {
 
 /* The layer improved, and inside the promised window. */
 static laves_result improve_and_keep_promise(run *r) {
-  const bool mends = r->guarantee && r->options->method == LAVES_METHOD_AUTO;
   laves_result result = LAVES_OK;
-  if (mends && is_hopeless(r)) result = stuff_everything(r);
+  if (may_mend(r) && is_hopeless(r)) result = stuff_everything(r);
   if (result == LAVES_OK) result = improve(r);
-  if (result == LAVES_OK && mends) result = mend_promise(r);
+  if (result == LAVES_OK && may_mend(r) && is_empty(r)) { /* flat tets only, all peeled off */
+    result = stuff_everything(r);
+    if (result == LAVES_OK) result = improve(r);
+  }
+  if (result == LAVES_OK && may_mend(r)) result = mend_promise(r);
   return result;
 }
 

@@ -18,12 +18,12 @@ enum { SWEEPS = 2, SMOOTH_PASSES = 5, CONTRACT_PASSES = 12, CROWD_PASSES = 2, TH
 /* Where more than this share of the layer is bad after smoothing, walls are a tet thick and the window can't be met there:
  * few passes of contraction, and no more patience. */
 static const double crowd = 0.03;
-static const size_t crowd_min = 2000;      /* tets; fewer never are a crowd */
-static const double block_side = 15;       /* sizes; see above */
-static const double worthwhile = 0.02;     /* share of bad tets that a pass must cure to be followed by its like */
-static const double thorough_below = 0.96; /* quality below which the few that remain get more patience */
-static const double peel_below = 0.5;      /* quality below which a tet between two surfaces is taken away, if it can be */
-static const double settle_floor = 0.2;    /* quality that bringing a vertex back to the surface may cost: about 18 degrees */
+static const size_t crowd_min = 2000;       /* tets; fewer never are a crowd */
+static const double block_side = 15;        /* sizes; see above */
+static const double worthwhile = 0.02;      /* share of bad tets that a pass must cure to be followed by its like */
+static const double thorough_below = 0.985; /* quality below which the few that remain get more patience */
+static const double peel_below = 0.5;       /* quality below which a tet between two surfaces is taken away, if it can be */
+static const double settle_floor = 0.2;     /* quality that bringing a vertex back to the surface may cost: about 18 degrees */
 
 laves__measure laves__measure_of(const laves__window *w) {
   static const double radians = 3.14159265358979323846 / 180;

@@ -38,8 +38,7 @@ static void make_block(laves_context *context, uint64_t seed, unsigned share, la
       for (int x = 0; x < SIDE; x++) {
         const int32_t i = laves__lattice_add_record(lattice, x, y, z);
         assert_true(i >= 0);
-        const bool inner =
-            x > 0 && y > 0 && z > 0 && x < SIDE - 1 && y < SIDE - 1 && z < SIDE - 1;
+        const bool inner = x > 0 && y > 0 && z > 0 && x < SIDE - 1 && y < SIDE - 1 && z < SIDE - 1;
         laves__record *r = &lattice->record[i];
         r->zone = (UINT32_C(1) << LAVES__C15_SITES) - 1;
         for (int site = 0; site < LAVES__C15_SITES; site++) {
@@ -127,10 +126,8 @@ static void attack(laves_context *context, const laves__guarantee *g, uint64_t s
   const laves__oracle oracle = {.evaluate = evaluate_zero};
   const laves__frame frame = {.oracle = &oracle, .rotation = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, .size = 1};
   make_block(context, seed, share, &lattice);
-  laves__stuffing s = {.frame = &frame,
-                       .guarantee = g,
-                       .lattice = &lattice,
-                       .site_count = lattice.record_count * LAVES__C15_SITES};
+  laves__stuffing s = {
+      .frame = &frame, .guarantee = g, .lattice = &lattice, .site_count = lattice.record_count * LAVES__C15_SITES};
   laves__parted parted = {0};
   size_t unsnapped = 0;
   bool grown = false;
