@@ -21,3 +21,8 @@ draw knot knot.ply 12k --view 20,50 --size 560x420
 draw socket-cut socket.lua 60k --view -50,35 --size 640x440 --cut y
 draw gyroid gyroid.lua 40k --view 30,25 --size 560x420
 draw angles octopus.lua 30k --view -80,15 --size 760x480 --cut y --color dihedral
+
+# The worst configurations, for docs/proof.md; the test that proves the bounds writes them.
+"${program%/*}/tests/proof" --draw "$meshes" > "$meshes/worst.txt"
+"$program" view "$meshes/smallest-angle.vtu" --color dihedral --view=-135,-10 --size 400x240 -o docs/images/proof-smallest.png
+"$program" view "$meshes/largest-angle.vtu" --color dihedral --view=-135,20 --size 400x240 -o docs/images/proof-largest.png

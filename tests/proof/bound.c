@@ -209,6 +209,13 @@ static double least_volume(laves__vec3 end[4][2], const int count[4]) {
   return least;
 }
 
+bool is_positive(const segment corner[4]) {
+  laves__vec3 end[4][2];
+  int count[4];
+  for (int i = 0; i < 4; i++) count[i] = ends(&corner[i], end[i]);
+  return least_volume(end, count) > 0;
+}
+
 /* Upper bound of twice the area of the triangle without corner `apex`: convex in each share, so largest at the ends. */
 static double largest_face(laves__vec3 end[4][2], const int count[4], int apex) {
   const int a = apex == 0, b = apex <= 1 ? 2 : 1, c = apex <= 2 ? 3 : 2;

@@ -33,6 +33,9 @@ range cosine_range(double degrees);
 /* The middle of a range if it lies on FINE_GRID. */
 bool middle_of(range r, double *middle);
 
+/* Whether the tet is positive for all positions of its corners. */
+bool is_positive(const segment corner[4]);
+
 /* Whether the tet is proved to be positive, with all dihedral angles in the window, for all positions of its corners. Each
  * range may be halved `depth` times. */
 bool angles_inside(const segment corner[4], const window *w, int depth, effort *spent);

@@ -128,7 +128,7 @@ static bool visit_links(enumeration *e, int v) {
   return true;
 }
 
-bool visit_reachable(const laves__guarantee *guarantee, int tet, visit_configuration visit, void *user) {
+static bool visit_labels(const laves__guarantee *guarantee, int tet, bool dropped_too, visit_configuration visit, void *user) {
   enumeration e = {.guarantee = guarantee, .visit = visit, .user = user, .c = {.tet = tet}};
   for (int i = 0; i < 4; i++) {
     const laves__c15_corner corner = laves__c15_tet[tet][i];
@@ -149,10 +149,18 @@ bool visit_reachable(const laves__guarantee *guarantee, int tet, visit_configura
       e.c.share[i] = (range){0, 0};
       inner += e.c.label[i] == LAVES__LABEL_IN;
     }
-    if (inner == 0 || inner == 4) continue;
+    if (!dropped_too && (inner == 0 || inner == 4)) continue;
     if (!visit_links(&e, 0)) return false;
   }
   return true;
+}
+
+bool visit_reachable(const laves__guarantee *guarantee, int tet, visit_configuration visit, void *user) {
+  return visit_labels(guarantee, tet, false, visit, user);
+}
+
+bool visit_all(const laves__guarantee *guarantee, int tet, visit_configuration visit, void *user) {
+  return visit_labels(guarantee, tet, true, visit, user);
 }
 
 int range_count(const configuration *c) {

@@ -26,9 +26,12 @@ typedef struct configuration {
   double length2[4][4];
 } configuration;
 
-/* Calls visit for every configuration of the tet until one call returns false. Returns whether none did. */
+/* Calls visit for every configuration of the tet with a corner IN, but not with all, until one call returns false. Returns
+ * whether none did. */
 typedef bool (*visit_configuration)(const configuration *c, void *user);
 bool visit_reachable(const laves__guarantee *guarantee, int tet, visit_configuration visit, void *user);
+/* The same for every configuration, also of tets that are dropped. */
+bool visit_all(const laves__guarantee *guarantee, int tet, visit_configuration visit, void *user);
 
 /* Largest alpha; the rule needs less than 1/2, so that a crossing violates one end at most. */
 double largest_alpha(const laves__thresholds *thresholds);
