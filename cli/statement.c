@@ -35,8 +35,9 @@ static const char *causes_of(const laves_certificate *c, laves_exception_kind ki
     const size_t used = strlen(text);
     if (count) snprintf(text + used, size - used, "%s%d %s", used ? ", " : " (", count, laves_cause_key((laves_cause)cause));
   }
-  if (text[0])
-    strncat(text, c->exception_counts[kind] > LAVES_PLACE_CAPACITY ? " among the worst)" : ")", size - strlen(text) - 1);
+  const size_t used = strlen(text);
+  const bool all = c->exception_counts[kind] <= LAVES_PLACE_CAPACITY;
+  if (used) snprintf(text + used, size - used, "%s", all ? ")" : " among the worst)");
   return text;
 }
 

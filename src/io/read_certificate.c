@@ -221,22 +221,26 @@ static laves_result refuse_large(const char *path, laves_error *error) {
   return LAVES_OK;
 }
 
+laves_result laves__certificate_parse(const char *bytes, size_t length, const char *name, laves_certificate *certificate,
+                                      laves_error *error) {
+  const reader r = {name, certificate, error};
+  json_error_t wrong;
+  set_unknown(certificate);
+  json_t *root = json_loadb(bytes, length, JSON_REJECT_DUPLICATES, &wrong);
+  if (!root) return laves__fail(error, LAVES_ERROR_INPUT, "%s:%d: it is no JSON: %s", name, wrong.line, wrong.text);
+  const laves_result result = read_root(&r, root);
+  json_decref(root);
+  return result;
+}
+
 laves_result laves_certificate_read(laves_context *context, const char *path, laves_certificate *certificate,
                                     laves_error *error) {
   char *bytes;
   size_t length;
-  const reader r = {path, certificate, error};
-  set_unknown(certificate);
   laves_result result = refuse_large(path, error);
   if (result == LAVES_OK) result = laves__file_read(context, path, &bytes, &length, error);
   if (result != LAVES_OK) return result;
-  json_error_t wrong;
-  json_t *root = json_loadb(bytes, length, JSON_REJECT_DUPLICATES, &wrong);
-  if (root)
-    result = read_root(&r, root);
-  else
-    result = laves__fail(error, LAVES_ERROR_INPUT, "%s:%d: it is no JSON: %s", path, wrong.line, wrong.text);
-  json_decref(root);
+  result = laves__certificate_parse(bytes, length, path, certificate, error);
   laves__free(context, bytes, length + 1, 1);
   return result;
 }

@@ -1,0 +1,374 @@
+/* Certificates: figures known in closed form, exceptions made on purpose, upper bounds of distances that brute force bears out,
+ * a file that reads back the same, and lies that are found out. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+/* cmocka.h wants the headers above. */
+#include <cmocka.h>
+
+#include "certify/certify.h"
+#include "fixtures/folders.h"
+#include "fixtures/meshes.h"
+#include "fixtures/shapes.h"
+#include "io/certificate_table.h"
+
+static int set_up(void **state) {
+  *state = laves_context_create(NULL);
+  return *state == NULL;
+}
+
+static int tear_down(void **state) {
+  const size_t left = laves_context_bytes(*state);
+  laves_context_free(*state);
+  return left != 0;
+}
+
+static laves_domain *domain_of(laves_context *context, const shape *s) {
+  laves_domain *domain = NULL;
+  assert_int_equal(laves_domain_from_triangles(context, s->points, s->point_count, s->triangles, s->triangle_count, NULL, &domain,
+                                               NULL),
+                   LAVES_OK);
+  return domain;
+}
+
+static laves_certificate certify(laves_context *context, const laves_mesh *mesh, const laves_certify_options *options) {
+  laves_certificate c;
+  laves_error error;
+  if (laves_certify(context, mesh, options, &c, &error) != LAVES_OK) fail_msg("%s", error.text);
+  return c;
+}
+
+/* ---- figures ---- */
+
+/* Kuhn's cubes have angles of 45 to 90 degrees. */
+static void cubes_alone(void **state) {
+  laves_mesh *mesh = fixture_cubes(*state, 3, 2, 2, NULL, NULL);
+  const laves_certificate c = certify(*state, mesh, NULL);
+  assert_true(c.check.valid);
+  assert_false(c.has_input || c.has_options || c.has_promise || c.check.has_distance);
+  assert_true(c.promise_holds);
+  assert_int_equal(c.check.tets, 72);
+  assert_int_equal(c.exception_counts[LAVES_EXCEPTION_OUTSIDE_ASKED], 0); /* 40..125, and a ratio of 0.65 */
+  assert_true(c.attained_min_dihedral < 45 && c.attained_min_dihedral > 45 - 1e-7);
+  assert_true(c.attained_max_dihedral > 90 && c.attained_max_dihedral < 90 + 1e-7);
+  assert_int_equal(c.exception_count, 0);
+  assert_int_equal(strlen(c.mesh_hash), 64);
+  laves_mesh_free(mesh);
+}
+
+/* A promise is kept by more than the margin or not at all. */
+static void promises(void **state) {
+  laves_mesh *mesh = fixture_cubes(*state, 2, 2, 2, NULL, NULL);
+  laves_certify_options options = laves_certify_options_default();
+  const struct {
+    double least, most;
+    size_t outside;
+  } windows[] = {{44.9, 90.1, 0}, {45, 90.1, 48}, {44.9, 90, 48}, {45.1, 180, 48}, {0, 89, 48}};
+  for (size_t i = 0; i < sizeof windows / sizeof windows[0]; i++) {
+    options.promised_min_dihedral = windows[i].least;
+    options.promised_max_dihedral = windows[i].most;
+    const laves_certificate c = certify(*state, mesh, &options);
+    assert_true(c.has_promise);
+    assert_int_equal(c.exception_counts[LAVES_EXCEPTION_OUTSIDE_PROMISED], windows[i].outside);
+    assert_int_equal(c.promise_holds, windows[i].outside == 0);
+    assert_int_equal(c.exception_count, windows[i].outside ? LAVES_PLACE_CAPACITY : 0);
+  }
+  laves_mesh_free(mesh);
+}
+
+/* The hash knows points and tets, not what else a file may keep. */
+static void what_the_hash_knows(void **state) {
+  laves_mesh *mesh = fixture_cubes(*state, 2, 2, 2, NULL, NULL);
+  const laves_certificate first = certify(*state, mesh, NULL);
+  mesh->lattice_tet_count = 7;
+  mesh->points[0].x = -0.0;
+  assert_string_equal(certify(*state, mesh, NULL).mesh_hash, first.mesh_hash);
+  mesh->points[0].x = 1e-300;
+  assert_string_not_equal(certify(*state, mesh, NULL).mesh_hash, first.mesh_hash);
+  mesh->points[0].x = 0;
+  const int32_t corner = mesh->tets[3][0];
+  mesh->tets[3][0] = mesh->tets[3][1];
+  mesh->tets[3][1] = corner;
+  assert_string_not_equal(certify(*state, mesh, NULL).mesh_hash, first.mesh_hash);
+  laves_mesh_free(mesh);
+}
+
+/* ---- exceptions ---- */
+
+static void inverted_tet(void **state) {
+  laves_mesh *mesh = fixture_cubes(*state, 2, 2, 2, NULL, NULL);
+  const int32_t corner = mesh->tets[5][0];
+  mesh->tets[5][0] = mesh->tets[5][1];
+  mesh->tets[5][1] = corner;
+  laves_certificate c = certify(*state, mesh, NULL);
+  assert_false(c.check.valid || c.promise_holds);
+  assert_int_equal(c.exception_counts[LAVES_EXCEPTION_INVERTED_TET], 1);
+  assert_int_equal(c.exceptions[0].kind, LAVES_EXCEPTION_INVERTED_TET);
+  assert_int_equal(c.exceptions[0].index, 5);
+  laves_mesh_free(mesh);
+}
+
+static bool diagonal(void *user, int x, int y, int z) {
+  (void)user;
+  (void)z;
+  return x == y;
+}
+
+static void nonmanifold_places(void **state) {
+  laves_mesh *mesh = fixture_cubes(*state, 2, 2, 1, diagonal, NULL);
+  const laves_certificate c = certify(*state, mesh, NULL);
+  assert_false(c.check.valid);
+  assert_int_equal(c.exception_counts[LAVES_EXCEPTION_NONMANIFOLD_EDGE], 1);
+  assert_int_equal(c.exceptions[0].kind, LAVES_EXCEPTION_NONMANIFOLD_EDGE);
+  assert_float_equal(c.exceptions[0].place[0], 1, 1e-12);
+  assert_float_equal(c.exceptions[0].place[1], 1, 1e-12);
+  assert_float_equal(c.exceptions[0].place[2], 0.5, 1e-12);
+  laves_mesh_free(mesh);
+}
+
+/* A cube against a cube that is a tenth wider: every boundary vertex is off, by 0.05 to sqrt(3) 0.05. */
+static void off_the_surface(void **state) {
+  laves_mesh *mesh = fixture_cubes(*state, 2, 2, 2, NULL, NULL);
+  shape box = shape_box((const double[3]){-0.05, -0.05, -0.05}, (const double[3]){2.05, 2.05, 2.05}, 1);
+  laves_domain *domain = domain_of(*state, &box);
+  laves_certify_options options = laves_certify_options_default();
+  options.domain = domain;
+  const laves_certificate c = certify(*state, mesh, &options);
+  assert_int_equal(c.exception_counts[LAVES_EXCEPTION_OFF_SURFACE], 26);
+  assert_int_equal(c.exception_counts[LAVES_EXCEPTION_DISTANT], 0);
+  assert_float_equal(c.check.to_surface_max, 0.05, 1e-12);
+  assert_true(c.check.from_surface_max <= sqrt(3) * 0.05 && c.check.from_surface_at_most >= sqrt(3) * 0.05);
+  assert_int_equal(c.exceptions[0].kind, LAVES_EXCEPTION_OFF_SURFACE);
+  assert_float_equal(c.exceptions[0].value, 0.05, 1e-12);
+  assert_true(c.has_input && strcmp(c.input_kind, "surface") == 0 && c.input_hash[0] == 0);
+  laves_domain_free(domain);
+  shape_free(&box);
+  laves_mesh_free(mesh);
+}
+
+/* A plate of half a size, meshed with cubes of its thickness: thin is told as the cause. */
+static void causes(void **state) {
+  laves_mesh *mesh = fixture_cubes(*state, 6, 6, 1, NULL, NULL);
+  for (size_t v = 0; v < mesh->vertex_count; v++) mesh->points[v].z *= 0.2;
+  shape plate = shape_box((const double[3]){0, 0, 0}, (const double[3]){6, 6, 0.2}, 1);
+  laves_domain *domain = domain_of(*state, &plate);
+  laves_certify_options options = laves_certify_options_default();
+  options.domain = domain;
+  const laves_certificate c = certify(*state, mesh, &options);
+  assert_true(c.exception_counts[LAVES_EXCEPTION_OUTSIDE_ASKED] > 100);
+  assert_true(c.exception_counts[LAVES_EXCEPTION_THIN] > 0);
+  for (size_t i = 0; i < c.exception_count; i++) assert_int_equal(c.exceptions[i].cause, LAVES_CAUSE_THIN);
+  laves_domain_free(domain);
+  shape_free(&plate);
+  laves_mesh_free(mesh);
+}
+
+/* ---- upper bounds ---- */
+
+static double random_unit(uint64_t *seed) {
+  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+  return (double)(*seed >> 11) / 9007199254740992.0;
+}
+
+/* No point of a triangle is further from its corners than the cover, and some point nearly is. */
+static void cover_of_corners(void **state) {
+  uint64_t seed = 7;
+  (void)state;
+  for (int i = 0; i < 300; i++) {
+    laves__vec3 p[3];
+    for (int k = 0; k < 3; k++) p[k] = v3(random_unit(&seed), random_unit(&seed), (i % 3 ? 1 : 0.01) * random_unit(&seed));
+    const double cover = laves__corner_cover(p[0], p[1], p[2]);
+    double furthest = 0;
+    enum { STEPS = 60 };
+    for (int u = 0; u <= STEPS; u++)
+      for (int v = 0; u + v <= STEPS; v++) {
+        const laves__vec3 q = v3_add(v3_scale(p[0], 1 - (u + v) / (double)STEPS),
+                                     v3_add(v3_scale(p[1], u / (double)STEPS), v3_scale(p[2], v / (double)STEPS)));
+        furthest = fmax(furthest, fmin(v3_distance(q, p[0]), fmin(v3_distance(q, p[1]), v3_distance(q, p[2]))));
+      }
+    assert_true(furthest <= cover * (1 + 1e-12));
+    assert_true(furthest >= cover - 2.0 / STEPS);
+  }
+  assert_true(laves__corner_cover(v3(0, 0, 0), v3(0, 0, 0), v3(0, 0, 0)) == 0);
+  assert_float_equal(laves__corner_cover(v3(0, 0, 0), v3(2, 0, 0), v3(1, 0, 0)), 0.5, 1e-12);
+}
+
+/* Distances of points that no sample is near, by a surface of slivers and by one of tiny faces, lie below the bound. */
+static void bounds_hold(void **state) {
+  laves_mesh *mesh = fixture_ball(*state, 6, 1);
+  const int counts[] = {1, 9};
+  uint64_t seed = 3;
+  for (size_t i = 0; i < 2; i++) {
+    shape box = shape_box((const double[3]){-1, -0.7, -0.6}, (const double[3]){1.2, 0.8, 0.7}, counts[i]);
+    laves_domain *domain = domain_of(*state, &box);
+    laves_check check;
+    assert_int_equal(laves_check_mesh(*state, mesh, domain, &check, NULL), LAVES_OK);
+    assert_true(check.to_surface_at_most >= check.to_surface_max && check.from_surface_at_most >= check.from_surface_max);
+    assert_true(check.from_surface_cover <= 0.31 * check.edge_mean * 2);
+    double furthest = 0;
+    for (size_t f = 0; f < mesh->face_count; f++)
+      for (int k = 0; k < 40; k++) {
+        const double a = random_unit(&seed), b = random_unit(&seed) * (1 - a);
+        const laves__vec3 *p = mesh->points;
+        const int32_t *face = mesh->faces[f];
+        const laves__vec3 q = v3_add(v3_scale(p[face[0]], 1 - a - b), v3_add(v3_scale(p[face[1]], a), v3_scale(p[face[2]], b)));
+        double phi;
+        laves_domain_evaluate(domain, &q.x, 1, &phi);
+        furthest = fmax(furthest, fabs(phi));
+      }
+    assert_true(furthest <= check.to_surface_at_most && furthest > 0.8 * check.to_surface_max);
+    laves_domain_free(domain);
+    shape_free(&box);
+  }
+  laves_mesh_free(mesh);
+}
+
+/* ---- files ---- */
+
+/* Compares all members by the table, so that none is forgotten. */
+static void assert_same(const laves_certificate *a, const laves_certificate *b) {
+  for (size_t i = 0; i < laves__certificate_member_count; i++) {
+    const laves__member *m = &laves__certificate_members[i];
+    const char *x = (const char *)a + m->offset, *y = (const char *)b + m->offset;
+    switch (m->kind) {
+      case LAVES__MEMBER_TEXT:
+        assert_string_equal(x, y);
+        break;
+      case LAVES__MEMBER_NUMBER:
+        for (size_t k = 0; k < m->count; k++) {
+          const double u = ((const double *)x)[k], v = ((const double *)y)[k];
+          if (u != v && !(isnan(u) && isnan(v))) fail_msg("%s.%s: %.17g and %.17g", m->group, m->name, u, v);
+        }
+        break;
+      case LAVES__MEMBER_COUNT:
+        assert_memory_equal(x, y, m->count * sizeof(size_t));
+        break;
+      case LAVES__MEMBER_INTEGER:
+        assert_int_equal(*(const int64_t *)x, *(const int64_t *)y);
+        break;
+      case LAVES__MEMBER_FLAG:
+        assert_int_equal(*(const bool *)x, *(const bool *)y);
+        break;
+      default:
+        assert_memory_equal(x, y, sizeof(int));
+    }
+  }
+  assert_int_equal(a->exception_count, b->exception_count);
+  assert_memory_equal(a->exception_counts, b->exception_counts, sizeof a->exception_counts);
+}
+
+/* A made mesh with all groups of members: write, read, compare, verify. */
+static void through_a_file(void **state) {
+  char folder[FIXTURE_FOLDER_MAX], path[FIXTURE_FOLDER_MAX + 20];
+  assert_true(fixture_folder_make(folder));
+  snprintf(path, sizeof path, "%s/a.json", folder);
+  const char *expression = "sphere(1) - box(0.4, 3, 0.4)";
+  laves_domain *domain;
+  laves_mesh *mesh;
+  laves_report report;
+  laves_certificate read;
+  assert_int_equal(laves_domain_from_expression(*state, expression, &domain, NULL), LAVES_OK);
+  laves_options made = laves_options_default();
+  made.size = 0.2;
+  assert_int_equal(laves_generate(*state, domain, &made, &mesh, &report, NULL), LAVES_OK);
+  laves_certify_options options = laves_certify_options_default();
+  options.domain = domain;
+  options.input = expression;
+  options.options = &made;
+  options.report = &report;
+  const laves_certificate c = certify(*state, mesh, &options);
+  assert_true(c.check.valid && c.has_options && c.has_input && c.check.has_distance);
+  assert_true(c.lattice_tets >= report.lattice_tets);
+  assert_float_equal(c.lattice_size, report.size, 1e-9);
+  assert_string_equal(c.input_name, expression);
+
+  assert_int_equal(laves_certificate_write(*state, &c, path, NULL), LAVES_OK);
+  assert_int_equal(laves_certificate_read(*state, path, &read, NULL), LAVES_OK);
+  assert_same(&c, &read);
+  laves_difference differences[8];
+  size_t count;
+  assert_int_equal(laves_certificate_verify(*state, mesh, domain, expression, &read, differences, 8, &count, NULL), LAVES_OK);
+  if (count) fail_msg("%s", differences[0].text);
+
+  read.check.genus = 7;
+  read.check.volume *= 1.001;
+  read.promise_holds = !read.promise_holds;
+  assert_int_equal(laves_certificate_verify(*state, mesh, NULL, NULL, &read, differences, 8, &count, NULL), LAVES_OK);
+  assert_int_equal(count, c.has_promise ? 3 : 2 + (read.promise_holds != c.promise_holds));
+  assert_string_equal(differences[0].text, "topology.genus: the certificate says 7, and it is 1");
+  laves_mesh_free(mesh);
+  laves_domain_free(domain);
+  fixture_folder_remove(folder);
+}
+
+/* A text that ends amid a character of two bytes is cut before it. */
+static void long_expressions(void **state) {
+  char text[400] = "sphere(1) --";
+  while (strlen(text) < 380) strcat(text, "\u00e4");
+  laves_domain *domain;
+  laves_mesh *mesh = fixture_cubes(*state, 1, 1, 1, NULL, NULL);
+  assert_int_equal(laves_domain_from_expression(*state, text, &domain, NULL), LAVES_OK);
+  laves_certify_options options = laves_certify_options_default();
+  options.domain = domain;
+  options.input = text;
+  options.distances = false;
+  const laves_certificate c = certify(*state, mesh, &options);
+  assert_false(c.check.has_distance);
+  assert_int_equal(strlen(c.input_name) % 2, 0);
+  assert_memory_equal(c.input_name, text, strlen(c.input_name));
+  laves_domain_free(domain);
+  laves_mesh_free(mesh);
+}
+
+static void assert_refused(laves_context *context, const char *json, const char *sentence) {
+  laves_certificate c;
+  laves_error error = {0};
+  (void)context;
+  assert_int_equal(laves__certificate_parse(json, strlen(json), "a.json", &c, &error), LAVES_ERROR_INPUT);
+  if (!strstr(error.text, sentence)) fail_msg("'%s' is not in '%s'", sentence, error.text);
+}
+
+static void refused_files(void **state) {
+  assert_refused(*state, "", "a.json:");
+  assert_refused(*state, "[1]", "'certificate' is not \"laves\"");
+  assert_refused(*state, "{\"certificate\": \"laves\"}", "the member 'schema' must be a whole number");
+  assert_refused(*state, "{\"certificate\": \"laves\", \"schema\": 99}", "has schema 99");
+  assert_refused(*state, "{\"certificate\": \"laves\", \"schema\": 1, \"version\": \"1\"}", "the member 'mesh' is missing");
+  assert_refused(*state, "{\"certificate\": \"laves\", \"schema\": 1, \"version\": \"1\", \"mesh\": {\"sha256\": 5}}",
+                 "the member 'mesh.sha256' must be a text");
+  assert_refused(*state, "{\"a\": 1, \"a\": 2}", "it is no JSON");
+}
+
+static void options_of_ones_own(void **state) {
+  laves_mesh *mesh = fixture_cubes(*state, 1, 1, 1, NULL, NULL);
+  const laves_certify_options wrong = {0};
+  laves_certificate c;
+  laves_error error;
+  assert_int_equal(laves_certify(*state, mesh, &wrong, &c, &error), LAVES_ERROR_OPTION);
+  assert_string_equal(laves_exception_key(LAVES_EXCEPTION_THIN), "thin");
+  assert_string_equal(laves_exception_key((laves_exception_kind)99), "unknown");
+  assert_string_equal(laves_cause_key(LAVES_CAUSE_CREASE), "crease");
+  laves_mesh_free(mesh);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test_setup_teardown(cubes_alone, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(promises, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(what_the_hash_knows, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(inverted_tet, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(nonmanifold_places, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(off_the_surface, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(causes, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(cover_of_corners, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(bounds_hold, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(through_a_file, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(long_expressions, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(refused_files, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(options_of_ones_own, set_up, tear_down),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
