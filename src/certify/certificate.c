@@ -115,18 +115,15 @@ static void find_window(laves_certificate *c) {
   c->attained_max_dihedral = fmin(180, check->max_dihedral.max + c->angle_margin);
 }
 
-static void explain_distances(const laves_domain *domain, laves_certificate *c) {
+static void explain_distances(laves_certificate *c) {
   const laves_check *check = &c->check;
   if (!check->has_distance) return;
   if (isnan(check->to_surface_at_most))
     copy_text(c->to_surface_reason, sizeof c->to_surface_reason,
-              domain->info.kind == LAVES_DOMAIN_SURFACE ? "no sample has a foot on the surface"
-                                                        : "the feet of samples are found by iteration, not exactly");
+              "at some samples it was not seen that the surface passes where iteration found it");
   if (isnan(check->from_surface_at_most))
     copy_text(c->from_surface_reason, sizeof c->from_surface_reason,
-              domain->info.kind == LAVES_DOMAIN_SURFACE
-                  ? "the surface is not closed or not clean, so where it bounds the solid is known at samples only"
-                  : "an implicit surface is sampled where it was found; what lies between is not known");
+              "the surface is no clean set of flat faces, so what lies between its samples is not known");
   c->distance_asked = DISTANT_SHARE * check->edge_mean;
   c->off_surface_asked = OFF_SURFACE_SHARE * check->edge_mean;
 }
@@ -149,7 +146,7 @@ laves_result laves_certify(laves_context *context, const laves_mesh *mesh, const
   if (result == LAVES_OK) result = laves__find_tiles(context, mesh, c, error);
   note_making(options, c);
   find_window(c);
-  explain_distances(domain, c);
+  explain_distances(c);
   if (result == LAVES_OK) result = laves__list_exceptions(context, mesh, domain, &survey, c, error);
   laves__survey_free(&survey);
   return result;

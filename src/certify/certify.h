@@ -47,6 +47,7 @@ typedef struct laves__sample {
   double distance; /* to the other side; NAN when none was found */
   double weight;   /* in means; 0 for samples that only look for the largest distance */
   int64_t vertex;  /* of the mesh; -1: a point of an edge or face, or of the surface */
+  double slack;    /* the true distance is no larger than `distance` plus this; NAN: not known */
 } laves__sample;
 
 /* Samples in a fixed order: first [0, boundary_count) on the boundary of the mesh with their distances to the domain's surface,
@@ -55,8 +56,9 @@ typedef struct laves__samples {
   laves_context *context;
   laves__sample *items;
   size_t count, boundary_count, capacity;
-  double spacing;                       /* mean edge of the boundary */
-  double boundary_cover, surface_cover; /* how far a point of that side can be from its nearest sample; NAN: unknown */
+  double spacing;                           /* mean edge of the boundary */
+  double boundary_cover, surface_cover;     /* how far a point of that side can be from its nearest sample; NAN: unknown */
+  double boundary_at_most, surface_at_most; /* no point of that side is further from the other; NAN: unknown */
 } laves__samples;
 
 void laves__samples_free(laves__samples *samples);

@@ -13,6 +13,9 @@
  * boundary triangle are the corners and centroids of the four triangles that its midpoints make, so its cover is half that
  * of a triangle by its corners and centroid.
  *
+ * A foot that was found by iteration counts for the upper bound when the solid has both inside and outside within a little ball
+ * round it: then its boundary passes through that ball, whatever the iteration did.
+ *
  * All work is in the domain's local frame, where no digits are lost far from the origin. */
 #include <string.h>
 
@@ -25,6 +28,9 @@ enum { CHUNK = 256, SAMPLES_PER_FACE = 4 + 3 + 3, INNER = 4 };
 /* The first reach of a projection in mean boundary edges; it grows by REACH_GROWTH up to the size of everything. */
 #define FIRST_REACH 2.0
 #define REACH_GROWTH 8.0
+/* The first and the longest step to both sides of a foot, in mean boundary edges. */
+#define FOOT_STEP 1e-6
+#define FOOT_STEP_MAX 1.1e-2
 /* More samples would say nothing more; the spacing is widened instead. */
 #define SURFACE_SAMPLES_MAX 8e6
 
@@ -42,6 +48,7 @@ typedef struct measuring {
   laves__samples *samples;
   laves__boundary_tree *tree;
   double reach, reach_max;
+  bool is_surface; /* of triangles, clean or not */
 } measuring;
 
 /* Mean edge of the boundary and the box of its finite points. */
@@ -60,7 +67,7 @@ static double mean_edge(const laves_mesh *mesh, const laves__boundary *boundary,
   return count ? sum / (double)count : 0;
 }
 
-static laves__sample sample_at(laves__vec3 point, double weight) { return (laves__sample){point, NAN, weight, -1}; }
+static laves__sample sample_at(laves__vec3 point, double weight) { return (laves__sample){point, NAN, weight, -1, 0}; }
 
 /* In an acute triangle the circumcentre is furthest; else the points of the longest edge that are as far from one of its ends
  * as from the corner opposite. */
@@ -95,7 +102,7 @@ static void add_face_samples(const laves_mesh *mesh, const int32_t face[3], uint
   for (int i = 0; i < 3; i++) p[i] = mesh->points[face[i]];
   if (!v3_finite(p[0]) || !v3_finite(p[1]) || !v3_finite(p[2])) return;
   for (int i = 0; i < 3; i++) {
-    if (!seen[face[i]]) *next++ = (laves__sample){p[i], NAN, 0, face[i]};
+    if (!seen[face[i]]) *next++ = (laves__sample){p[i], NAN, 0, face[i], 0};
     seen[face[i]] = 1;
     if (face[i] < face[(i + 1) % 3]) *next++ = sample_at(v3_lerp(p[i], p[(i + 1) % 3], 0.5), 0);
   }
@@ -120,15 +127,43 @@ static laves_result list_boundary_samples(laves_context *context, measuring *m, 
   return LAVES_OK;
 }
 
+/* Whether both signs occur among the points a step from the foot: against and along the normal, else all around. */
+static bool has_both_signs(const measuring *m, laves__vec3 foot, laves__vec3 normal, double step) {
+  enum { AROUND = 14 };
+  laves__vec3 points[AROUND] = {v3_mad(foot, normal, -step), v3_mad(foot, normal, step)};
+  double phi[AROUND];
+  m->oracle->evaluate(m->oracle->self, 2, points, phi, NULL);
+  if ((phi[0] < 0) != (phi[1] < 0)) return true;
+  const double diagonal = step / sqrt(3);
+  for (int i = 0; i < 6; i++) points[i] = v3_mad(foot, v3(i / 2 == 0, i / 2 == 1, i / 2 == 2), i % 2 ? step : -step);
+  for (int i = 0; i < 8; i++) points[6 + i] = v3_mad(foot, v3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1), diagonal);
+  m->oracle->evaluate(m->oracle->self, AROUND, points, phi, NULL);
+  int inside = 0;
+  for (int i = 0; i < AROUND; i++) inside += phi[i] < 0;
+  return inside > 0 && inside < AROUND;
+}
+
+/* How far from a foot the solid's boundary passes at most; NAN when that is not seen within a hundredth of an edge. */
+static double foot_slack(const measuring *m, laves__vec3 foot, laves__vec3 normal) {
+  if (m->oracle->flat_face) return 0;
+  for (double step = FOOT_STEP * m->samples->spacing; step <= FOOT_STEP_MAX * m->samples->spacing; step *= 10)
+    if (has_both_signs(m, foot, normal, step)) return step * COVER_SLACK;
+  return NAN;
+}
+
 /* Without a foot at any reach the value of a true distance serves. */
-static double distance_to_surface(const measuring *m, laves__vec3 local, uint32_t *hint) {
+static double distance_to_surface(const measuring *m, laves__vec3 local, uint32_t *hint, double *slack) {
   laves__vec3 foot, normal;
   for (double reach = m->reach;; reach *= REACH_GROWTH) {
     if (reach > m->reach_max) reach = m->reach_max;
-    if (m->oracle->project(m->oracle->self, local, reach, hint, &foot, &normal)) return v3_distance(local, foot);
+    if (m->oracle->project(m->oracle->self, local, reach, hint, &foot, &normal)) {
+      *slack = foot_slack(m, foot, normal);
+      return v3_distance(local, foot);
+    }
     *hint = LAVES__NO_HINT;
     if (reach >= m->reach_max) break;
   }
+  *slack = NAN;
   if (!m->oracle->is_distance) return NAN;
   double phi;
   m->oracle->evaluate(m->oracle->self, 1, &local, &phi, NULL);
@@ -144,7 +179,7 @@ static void project_chunks(void *user, size_t begin, size_t end, int worker) {
     uint32_t hint = LAVES__NO_HINT;
     for (size_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < m->samples->boundary_count; i++) {
       laves__sample *sample = &m->samples->items[i];
-      sample->distance = distance_to_surface(m, v3_sub(sample->point, m->oracle->origin), &hint);
+      sample->distance = distance_to_surface(m, v3_sub(sample->point, m->oracle->origin), &hint, &sample->slack);
     }
   }
 }
@@ -231,8 +266,9 @@ static laves_result list_own_samples(laves_context *context, const measuring *m,
   laves__samples *samples = m->samples;
   laves__vec3 *points = laves__alloc(context, room, sizeof *points);
   if (!points) return laves__fail_memory(context, error);
-  size_t count = oracle->sample ? oracle->sample(oracle->self, spacing, points, room) : 0;
-  for (double wider = spacing; !oracle->sample && count == 0 && wider < m->reach_max && !laves__is_cancelled(context); wider *= 2)
+  const bool has_faces = m->is_surface && oracle->sample;
+  size_t count = has_faces ? oracle->sample(oracle->self, spacing, points, room) : 0;
+  for (double wider = spacing; !has_faces && count == 0 && wider < m->reach_max && !laves__is_cancelled(context); wider *= 2)
     count = laves__sample_surface(context, oracle, wider, points, room);
   if (count > room) count = room;
   laves_result result = LAVES_OK;
@@ -258,12 +294,27 @@ static laves_result list_surface_samples(laves_context *context, measuring *m, l
 
 /* ---- both ---- */
 
+/* The largest of the true distances of samples [begin, end), as far as it can be; NAN when one is not known. */
+static double largest_of(const laves__samples *samples, size_t begin, size_t end) {
+  double largest = 0;
+  for (size_t i = begin; i < end; i++) {
+    const double distance = samples->items[i].distance + samples->items[i].slack;
+    if (isnan(distance)) return NAN;
+    largest = fmax(largest, distance);
+  }
+  return end > begin ? largest : NAN;
+}
+
 static size_t chunks(size_t count) { return (count + CHUNK - 1) / CHUNK; }
 
 laves_result laves__measure_distances(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
                                       const laves_domain *domain, laves__samples *samples, laves_error *error) {
   laves__box3 box;
-  measuring m = {.mesh = mesh, .boundary = boundary, .oracle = &domain->oracle, .samples = samples};
+  measuring m = {.mesh = mesh,
+                 .boundary = boundary,
+                 .oracle = &domain->oracle,
+                 .samples = samples,
+                 .is_surface = domain->info.kind == LAVES_DOMAIN_SURFACE};
   *samples = (laves__samples){.context = context, .spacing = mean_edge(mesh, boundary, &box), .surface_cover = NAN};
   const laves__box3 bounds = domain->oracle.bounds;
   m.reach = FIRST_REACH * samples->spacing;
@@ -282,6 +333,8 @@ laves_result laves__measure_distances(laves_context *context, const laves_mesh *
   if (result != LAVES_OK) goto clean_up;
   if (!laves__parallel_for(context, "distance", chunks(samples->count - samples->boundary_count), 1, nearest_chunks, &m))
     result = laves__fail_cancelled(error);
+  samples->boundary_at_most = largest_of(samples, 0, samples->boundary_count) + samples->boundary_cover;
+  samples->surface_at_most = largest_of(samples, samples->boundary_count, samples->count) + samples->surface_cover;
 clean_up:
   laves__boundary_tree_free(m.tree);
   if (result != LAVES_OK) laves__samples_free(samples);
@@ -304,9 +357,6 @@ static void summarise(const laves__samples *samples, size_t begin, size_t end, d
   *mean = weights > 0 ? sum / weights : NAN;
 }
 
-/* Feet on surfaces are exact; on implicit solids they come from Newton steps, which promise nothing. */
-static bool has_exact_feet(const laves_domain *domain) { return domain->info.kind == LAVES_DOMAIN_SURFACE; }
-
 laves_result laves__check_distances(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
                                     const laves_domain *domain, laves_check *check, laves__samples *samples, laves_error *error) {
   const laves_result result = laves__measure_distances(context, mesh, boundary, domain, samples, error);
@@ -316,8 +366,8 @@ laves_result laves__check_distances(laves_context *context, const laves_mesh *me
             check->from_surface_place);
   check->to_surface_cover = samples->boundary_cover;
   check->from_surface_cover = samples->surface_cover;
-  check->to_surface_at_most = has_exact_feet(domain) ? check->to_surface_max + samples->boundary_cover : NAN;
-  check->from_surface_at_most = check->from_surface_max + samples->surface_cover;
+  check->to_surface_at_most = samples->boundary_at_most;
+  check->from_surface_at_most = samples->surface_at_most;
   check->has_distance = true;
   check->domain_volume = domain->oracle.volume;
   return LAVES_OK;

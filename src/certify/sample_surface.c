@@ -1,79 +1,176 @@
-/* Samples of a surface that only tells signs and projections, such as a function of the caller's.
+/* Samples of a surface that only tells signs and projections: an implicit solid, or a function of the caller's.
  *
- * The box of the domain is halved again and again, leaving out cells that the domain knows to lie on one side. A cell of
- * the last level that has both signs among its corners and centre projects its centre; the foot is a sample when it lies
- * in the cell, so there is about one sample for each cell that the surface crosses. A domain that knows nothing of whole
- * cells makes this dense; then the search is given up and may be tried again with a wider spacing. */
+ * The box of the domain is halved again and again, leaving out blocks that the domain knows to lie on one side, until blocks
+ * are eight samples wide. In each block that remains phi is evaluated on a grid, which is far cheaper than asking about small
+ * cells one by one. A cell whose corners have both signs projects its centre; the foot is a sample when it lies in the cell, so
+ * there is about one sample for each cell that the surface crosses. A sheet between two grid points has no such cell: so
+ * a cell far from any of them is tried too, when phi at a corner is small against its steps in the block.
+ *
+ * Blocks are done in parallel, a wave at a time, and their samples put together in order. A domain that knows nothing of whole
+ * blocks may leave too many; then the search is given up and may be tried again with a wider spacing. */
 #include "certify/certify.h"
 
-enum { DEPTH_MAX = 12, VISITS_MAX = 1 << 21, VISITS_PER_ASKING = 4096 };
+enum {
+  CELLS = 8,
+  NODES = CELLS + 1,
+  BLOCK_CELLS = CELLS * CELLS * CELLS,
+  BLOCK_NODES = NODES * NODES * NODES,
+  BLOCKS_MAX = 1 << 17,
+  WAVE_BLOCKS = 128,
+};
+
+/* Halves of a cell's diagonal that |phi| over its steepest step may be, for a sheet to be looked for. */
+#define SHEET_NEAR 0.87
 
 typedef struct search {
   laves_context *context;
   const laves__oracle *oracle;
-  laves__vec3 *points;
-  size_t count, capacity, visits;
+  double half;         /* of the blocks in hand */
+  laves__vec3 *blocks; /* [count] their centres */
+  size_t count, capacity;
+  size_t first;       /* block of the wave */
+  laves__vec3 *found; /* [WAVE_BLOCKS][BLOCK_CELLS] */
+  size_t found_counts[WAVE_BLOCKS];
 } search;
 
-static bool holds(laves__vec3 centre, double half, laves__vec3 p) {
-  return fabs(p.x - centre.x) <= half && fabs(p.y - centre.y) <= half && fabs(p.z - centre.z) <= half;
-}
+/* ---- one block ---- */
 
-static bool has_both_signs(const laves__oracle *oracle, laves__vec3 c, double half) {
-  laves__vec3 points[9] = {c};
-  double phi[9];
-  int inside = 0;
-  for (int i = 0; i < 8; i++) points[i + 1] = v3_add(c, v3(i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half));
-  oracle->evaluate(oracle->self, 9, points, phi, NULL);
-  for (int i = 0; i < 9; i++) inside += phi[i] < 0;
-  return inside > 0 && inside < 9;
-}
+typedef enum cell_kind { EMPTY, CROSSED, NEAR_ZERO } cell_kind;
 
-static void sample_leaf(search *s, laves__vec3 c, double half) {
-  uint32_t hint = LAVES__NO_HINT;
-  laves__vec3 foot, normal;
-  if (s->count == s->capacity || (!s->oracle->is_distance && !has_both_signs(s->oracle, c, half))) return;
-  if (!s->oracle->project(s->oracle->self, c, 2 * half, &hint, &foot, &normal) || !holds(c, half, foot)) return;
-  s->points[s->count++] = foot;
-}
+typedef struct block {
+  laves__vec3 corner; /* the lowest */
+  double width;       /* of a cell */
+  double phi[BLOCK_NODES];
+  uint8_t kinds[BLOCK_CELLS];
+} block;
 
-/* Which of eight cells the surface may cross. Distances are asked for together: each helps to find the next. */
-static void find_crossed(const search *s, const laves__vec3 centres[8], double half, bool crossed[8]) {
-  double phi[8];
-  const double radius = sqrt(3) * half * (1 + 1e-9); /* room for the rounding of distances */
-  if (s->oracle->is_distance) s->oracle->evaluate(s->oracle->self, 8, centres, phi, NULL);
-  for (int i = 0; i < 8; i++)
-    crossed[i] = s->oracle->is_distance
-                     ? fabs(phi[i]) <= radius
-                     : s->oracle->side(s->oracle->self, centres[i], radius, v3(half, half, half)) == LAVES__UNDECIDED;
-}
+static int node_at(int x, int y, int z) { return x + NODES * (y + NODES * z); }
+static int cell_at(int x, int y, int z) { return x + CELLS * (y + CELLS * z); }
 
-/* Goes through the eight parts of a cell. */
-static void visit(search *s, laves__vec3 c, double half, int depth) {
-  const double h = half / 2;
-  laves__vec3 centres[8];
-  bool crossed[8];
-  if ((s->visits += 8) >= VISITS_MAX) return;
-  if (s->visits % VISITS_PER_ASKING == 0 && laves__cancelled(s->context, "distance", (double)s->visits / VISITS_MAX))
-    s->visits = VISITS_MAX;
-  for (int i = 0; i < 8; i++) centres[i] = v3_add(c, v3(i & 1 ? h : -h, i & 2 ? h : -h, i & 4 ? h : -h));
-  find_crossed(s, centres, h, crossed);
-  for (int i = 0; i < 8; i++) {
-    if (!crossed[i]) continue;
-    if (depth > 1)
-      visit(s, centres[i], h, depth - 1);
-    else
-      sample_leaf(s, centres[i], h);
+static void evaluate_nodes(const search *s, block *b) {
+  laves__vec3 points[BLOCK_NODES];
+  for (int i = 0; i < BLOCK_NODES; i++) {
+    const laves__vec3 steps = v3(i % NODES, i / NODES % NODES, i / (NODES * NODES));
+    points[i] = v3_mad(b->corner, steps, b->width);
   }
+  s->oracle->evaluate(s->oracle->self, BLOCK_NODES, points, b->phi, NULL);
+}
+
+/* The largest change of phi along an edge of the grid. */
+static double steepest(const block *b) {
+  double most = 0;
+  for (int i = 0; i < BLOCK_NODES; i++) {
+    if (i % NODES < CELLS) most = fmax(most, fabs(b->phi[i + 1] - b->phi[i]));
+    if (i / NODES % NODES < CELLS) most = fmax(most, fabs(b->phi[i + NODES] - b->phi[i]));
+    if (i / (NODES * NODES) < CELLS) most = fmax(most, fabs(b->phi[i + NODES * NODES] - b->phi[i]));
+  }
+  return most;
+}
+
+static void find_kinds(block *b) {
+  const double near = SHEET_NEAR * steepest(b);
+  for (int i = 0; i < BLOCK_CELLS; i++) {
+    const int x = i % CELLS, y = i / CELLS % CELLS, z = i / (CELLS * CELLS);
+    int inside = 0;
+    double least = INFINITY;
+    for (int k = 0; k < 8; k++) {
+      const double phi = b->phi[node_at(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2))];
+      inside += phi < 0;
+      least = fmin(least, fabs(phi));
+    }
+    b->kinds[i] = inside > 0 && inside < 8 ? CROSSED : least <= near ? NEAR_ZERO : EMPTY;
+  }
+}
+
+static bool has_crossed_neighbour(const block *b, int x, int y, int z) {
+  for (int k = 0; k < 27; k++) {
+    const int u = x + k % 3 - 1, v = y + k / 3 % 3 - 1, w = z + k / 9 - 1;
+    if (u < 0 || v < 0 || w < 0 || u >= CELLS || v >= CELLS || w >= CELLS) continue;
+    if (b->kinds[cell_at(u, v, w)] == CROSSED) return true;
+  }
+  return false;
+}
+
+/* Projects the centre of a cell; true when the foot lies in the cell. */
+static bool sample_cell(const search *s, const block *b, int x, int y, int z, laves__vec3 *foot) {
+  const laves__vec3 centre = v3_mad(b->corner, v3(x + 0.5, y + 0.5, z + 0.5), b->width);
+  uint32_t hint = LAVES__NO_HINT;
+  laves__vec3 normal;
+  if (!s->oracle->project(s->oracle->self, centre, b->width, &hint, foot, &normal)) return false;
+  const laves__vec3 away = v3_sub(*foot, centre);
+  return fmax(fabs(away.x), fmax(fabs(away.y), fabs(away.z))) <= b->width / 2;
+}
+
+static size_t sample_block(const search *s, laves__vec3 centre, laves__vec3 *found) {
+  block b = {.width = 2 * s->half / CELLS, .corner = v3_sub(centre, v3(s->half, s->half, s->half))};
+  size_t count = 0;
+  evaluate_nodes(s, &b);
+  find_kinds(&b);
+  for (int i = 0; i < BLOCK_CELLS; i++) {
+    const int x = i % CELLS, y = i / CELLS % CELLS, z = i / (CELLS * CELLS);
+    if (b.kinds[i] == EMPTY || (b.kinds[i] == NEAR_ZERO && has_crossed_neighbour(&b, x, y, z))) continue;
+    count += sample_cell(s, &b, x, y, z, &found[count]);
+  }
+  return count;
+}
+
+/* Each block of the wave writes to a place of its own. */
+static void sample_blocks(void *user, size_t begin, size_t end, int worker) {
+  search *s = user;
+  (void)worker;
+  for (size_t i = begin; i < end; i++) s->found_counts[i] = sample_block(s, s->blocks[s->first + i], s->found + i * BLOCK_CELLS);
+}
+
+/* ---- all blocks ---- */
+
+static bool may_hold_surface(const search *s, laves__vec3 centre, double half) {
+  const double radius = sqrt(3) * half * (1 + 1e-9); /* room for the rounding of distances */
+  return s->oracle->side(s->oracle->self, centre, radius, v3(half, half, half)) == LAVES__UNDECIDED;
+}
+
+/* Halves all blocks in hand; false when memory is short, or there are too many. */
+static bool halve(search *s) {
+  laves__vec3 *parts = NULL;
+  size_t capacity = 0, count = 0;
+  if (8 * s->count > 8 * BLOCKS_MAX || !laves__grow(s->context, &parts, &capacity, 8 * s->count, sizeof *parts)) return false;
+  const double h = s->half / 2;
+  for (size_t i = 0; i < 8 * s->count; i++) {
+    const laves__vec3 c = v3_add(s->blocks[i / 8], v3(i & 1 ? h : -h, i & 2 ? h : -h, i & 4 ? h : -h));
+    if (may_hold_surface(s, c, h)) parts[count++] = c;
+    if (i % 4096 == 0 && laves__cancelled(s->context, "distance", 0)) break;
+  }
+  laves__free(s->context, s->blocks, s->capacity, sizeof *s->blocks);
+  s->blocks = parts;
+  s->capacity = capacity;
+  s->count = count;
+  s->half = h;
+  return true;
+}
+
+static bool list_blocks(search *s, double spacing) {
+  const laves__vec3 widths = v3_sub(s->oracle->bounds.upper, s->oracle->bounds.lower);
+  if (!laves__grow(s->context, &s->blocks, &s->capacity, 1, sizeof *s->blocks)) return false;
+  s->blocks[0] = box3_centre(s->oracle->bounds);
+  s->half = fmax(widths.x, fmax(widths.y, widths.z)) / 2 * (1 + 1e-3);
+  s->count = 1;
+  while (2 * s->half > CELLS * spacing && s->count > 0 && !laves__is_cancelled(s->context))
+    if (!halve(s)) return false;
+  return s->count <= BLOCKS_MAX;
 }
 
 size_t laves__sample_surface(laves_context *context, const laves__oracle *oracle, double spacing, laves__vec3 *points,
                              size_t capacity) {
-  search s = {.context = context, .oracle = oracle, .points = points, .capacity = capacity};
-  const laves__vec3 widths = v3_sub(oracle->bounds.upper, oracle->bounds.lower);
-  const double half = fmax(widths.x, fmax(widths.y, widths.z)) / 2;
-  int depth = 1;
-  while (depth < DEPTH_MAX && 2 * half > ldexp(spacing, depth)) depth++;
-  visit(&s, box3_centre(oracle->bounds), half, depth);
-  return s.visits < VISITS_MAX ? s.count : 0;
+  search s = {.context = context, .oracle = oracle};
+  size_t count = 0;
+  const bool listed = list_blocks(&s, spacing);
+  s.found = listed ? laves__alloc(context, (size_t)WAVE_BLOCKS * BLOCK_CELLS, sizeof *s.found) : NULL;
+  for (; s.found && s.first < s.count && count < capacity; s.first += WAVE_BLOCKS) {
+    const size_t wave = s.count - s.first < WAVE_BLOCKS ? s.count - s.first : WAVE_BLOCKS;
+    if (!laves__parallel_for(context, "distance", wave, 1, sample_blocks, &s)) break;
+    for (size_t i = 0; i < wave; i++)
+      for (size_t k = 0; k < s.found_counts[i] && count < capacity; k++) points[count++] = s.found[i * BLOCK_CELLS + k];
+  }
+  if (s.found) laves__free(context, s.found, (size_t)WAVE_BLOCKS * BLOCK_CELLS, sizeof *s.found);
+  laves__free(context, s.blocks, s.capacity, sizeof *s.blocks);
+  return count;
 }

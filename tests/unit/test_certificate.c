@@ -28,9 +28,9 @@ static int tear_down(void **state) {
 
 static laves_domain *domain_of(laves_context *context, const shape *s) {
   laves_domain *domain = NULL;
-  assert_int_equal(laves_domain_from_triangles(context, s->points, s->point_count, s->triangles, s->triangle_count, NULL, &domain,
-                                               NULL),
-                   LAVES_OK);
+  assert_int_equal(
+      laves_domain_from_triangles(context, s->points, s->point_count, s->triangles, s->triangle_count, NULL, &domain, NULL),
+      LAVES_OK);
   return domain;
 }
 
