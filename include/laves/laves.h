@@ -404,7 +404,7 @@ enum { LAVES_HASH_CAPACITY = 65, LAVES_NAME_CAPACITY = 256, LAVES_EXCEPTION_CAPA
   X(NONMANIFOLD_VERTEX, "nonmanifold_vertex", "boundary vertices with several fans")  \
   X(OUTSIDE_PROMISED, "outside_promised", "tetrahedra outside the promised window")   \
   X(OUTSIDE_ASKED, "outside_asked", "tetrahedra outside the asked window")            \
-  X(DISTANT, "distant", "places where mesh and surface are further apart than asked") \
+  X(DISTANT, "distant", "places where mesh and surface are over 0.3 edges apart")     \
   X(OFF_SURFACE, "off_surface", "boundary vertices off the surface")                  \
   X(THIN, "thin", "places where the solid is thinner than the size")
 

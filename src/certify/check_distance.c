@@ -28,6 +28,8 @@ enum { CHUNK = 256, SAMPLES_PER_FACE = 4 + 3 + 3, INNER = 4 };
 /* The first reach of a projection in mean boundary edges; it grows by REACH_GROWTH up to the size of everything. */
 #define FIRST_REACH 2.0
 #define REACH_GROWTH 8.0
+/* What oracle.h promises of distances, relative. */
+#define DISTANCE_SLACK 1e-6
 /* The first and the longest step to both sides of a foot, in mean boundary edges. */
 #define FOOT_STEP 1e-6
 #define FOOT_STEP_MAX 1.1e-2
@@ -151,7 +153,18 @@ static double foot_slack(const measuring *m, laves__vec3 foot, laves__vec3 norma
   return NAN;
 }
 
-/* Without a foot at any reach the value of a true distance serves. */
+/* Without a foot a point may itself stand on the surface, where a gradient may vanish; else the value of a true distance serves.
+ */
+static double distance_without_foot(const measuring *m, laves__vec3 local, double *slack) {
+  double phi;
+  *slack = m->oracle->flat_face ? NAN : foot_slack(m, local, v3(0, 0, 1));
+  if (!isnan(*slack)) return 0;
+  if (!m->oracle->is_distance) return NAN;
+  m->oracle->evaluate(m->oracle->self, 1, &local, &phi, NULL);
+  *slack = DISTANCE_SLACK * fabs(phi);
+  return fabs(phi);
+}
+
 static double distance_to_surface(const measuring *m, laves__vec3 local, uint32_t *hint, double *slack) {
   laves__vec3 foot, normal;
   for (double reach = m->reach;; reach *= REACH_GROWTH) {
@@ -161,13 +174,8 @@ static double distance_to_surface(const measuring *m, laves__vec3 local, uint32_
       return v3_distance(local, foot);
     }
     *hint = LAVES__NO_HINT;
-    if (reach >= m->reach_max) break;
+    if (reach >= m->reach_max) return distance_without_foot(m, local, slack);
   }
-  *slack = NAN;
-  if (!m->oracle->is_distance) return NAN;
-  double phi;
-  m->oracle->evaluate(m->oracle->self, 1, &local, &phi, NULL);
-  return fabs(phi);
 }
 
 /* Samples are measured in chunks of a fixed size, within which each one starts from what the one before it found: that

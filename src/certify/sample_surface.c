@@ -17,6 +17,7 @@ enum {
   BLOCK_NODES = NODES * NODES * NODES,
   BLOCKS_MAX = 1 << 17,
   WAVE_BLOCKS = 128,
+  BISECTIONS = 40,
 };
 
 /* Halves of a cell's diagonal that |phi| over its steepest step may be, for a sheet to be looked for. */
@@ -91,13 +92,43 @@ static bool has_crossed_neighbour(const block *b, int x, int y, int z) {
   return false;
 }
 
-/* Projects the centre of a cell; true when the foot lies in the cell. */
-static bool sample_cell(const search *s, const block *b, int x, int y, int z, laves__vec3 *foot) {
+/* The place between two points of different sign where the sign changes. */
+static laves__vec3 bisect(const search *s, laves__vec3 inside, laves__vec3 outside) {
+  for (int i = 0; i < BISECTIONS; i++) {
+    const laves__vec3 middle = v3_lerp(inside, outside, 0.5);
+    double phi;
+    s->oracle->evaluate(s->oracle->self, 1, &middle, &phi, NULL);
+    if (phi < 0)
+      inside = middle;
+    else
+      outside = middle;
+  }
+  return v3_lerp(inside, outside, 0.5);
+}
+
+/* Where a crossed cell has no foot, as on flat walls whose gradient vanishes: a place on the way from a corner inside to one
+ * outside. */
+static bool sample_crossing(const search *s, const block *b, int x, int y, int z, laves__vec3 *place) {
+  laves__vec3 corners[2]; /* inside, outside */
+  bool has[2] = {false, false};
+  for (int k = 0; k < 8; k++) {
+    const int u = x + (k & 1), v = y + (k >> 1 & 1), w = z + (k >> 2);
+    const int side = !(b->phi[node_at(u, v, w)] < 0);
+    corners[side] = v3_mad(b->corner, v3(u, v, w), b->width);
+    has[side] = true;
+  }
+  if (!has[0] || !has[1]) return false;
+  *place = bisect(s, corners[0], corners[1]);
+  return true;
+}
+
+/* A place of the surface in the cell, if there is one that can be found: the foot of its centre where that lies in it. */
+static bool sample_cell(const search *s, const block *b, int x, int y, int z, laves__vec3 *place) {
   const laves__vec3 centre = v3_mad(b->corner, v3(x + 0.5, y + 0.5, z + 0.5), b->width);
   uint32_t hint = LAVES__NO_HINT;
   laves__vec3 normal;
-  if (!s->oracle->project(s->oracle->self, centre, b->width, &hint, foot, &normal)) return false;
-  const laves__vec3 away = v3_sub(*foot, centre);
+  if (!s->oracle->project(s->oracle->self, centre, b->width, &hint, place, &normal)) return sample_crossing(s, b, x, y, z, place);
+  const laves__vec3 away = v3_sub(*place, centre);
   return fmax(fabs(away.x), fmax(fabs(away.y), fabs(away.z))) <= b->width / 2;
 }
 
