@@ -159,9 +159,11 @@ static laves_result make_boundary(run *r) {
 static const double held_slack = 0.005;
 /* Where more than this share of the layer breaks the promise, small repairs are not tried. */
 static const double crowded = 0.001;
-/* Where snapping breaks it for more than this share, improvement would not mend it (models have at most 0.66 %, fractal noise
- * 0.5 to 1.5 %). */
-static const double hopeless = 0.007;
+/* Where snapping leaves more than this share, and this many, of the tets outside a window of 25 to 140 degrees, the solid is
+ * rougher than the size, and improvement would be long and in vain (models: at most 0.7 %, or a few; noise: 1.4 % and more). */
+static const laves__window rough_window = {.min_dihedral = 25, .max_dihedral = 140};
+static const double rough_share = 0.012;
+static const size_t rough_count = 250;
 
 /* Improvement aims a little inside the asked window, so that the last digits of its iterations do not matter. */
 static laves_result improve(run *r) {
@@ -178,9 +180,10 @@ static laves_result improve(run *r) {
   return result;
 }
 
-/* Whether snapping broke the promise in so many places that all is better made by stuffing at once. */
-static bool is_hopeless(const run *r) {
-  return (double)laves__count_broken(r->guarantee, &r->layer) > hopeless * (double)r->layer.tet_count;
+/* Whether so much is bad after snapping that all is better made by stuffing at once. */
+static bool is_rough(const run *r) {
+  const size_t bad = laves__improve_outside(&rough_window, &r->layer);
+  return bad > rough_count && (double)bad > rough_share * (double)r->layer.tet_count;
 }
 
 /* Where the promised window is broken, the boundary is made anew by stuffing: around the place, in a wider neighbourhood, in
@@ -204,7 +207,7 @@ static laves_result mend_promise(run *r) {
 /* The layer improved, and inside the promised window. */
 static laves_result improve_and_keep_promise(run *r) {
   laves_result result = LAVES_OK;
-  if (may_mend(r) && is_hopeless(r)) result = stuff_everything(r);
+  if (may_mend(r) && is_rough(r)) result = stuff_everything(r);
   if (result == LAVES_OK) result = improve(r);
   if (result == LAVES_OK && may_mend(r) && is_empty(r)) { /* flat tets only, all peeled off */
     result = stuff_everything(r);

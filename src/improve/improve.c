@@ -18,7 +18,11 @@ enum { SWEEPS = 2, SMOOTH_PASSES = 5, CONTRACT_PASSES = 12, CROWD_PASSES = 2, TH
 /* Where more than this share of the layer is bad after smoothing, walls are a tet thick and the window can't be met there:
  * few passes of contraction, and no more patience. */
 static const double crowd = 0.03;
-static const size_t crowd_min = 2000;       /* tets; fewer never are a crowd */
+static const size_t crowd_min = 2000; /* tets; fewer never are a crowd */
+/* Where even more than this share is bad after one pass, the solid is noise at this size: smoothing goes on for one more pass
+ * only, and only tets far outside get a contraction. */
+static const double rough_share = 0.2;
+static const double rough_admit = 0.4;      /* quality: about 26 degrees */
 static const double block_side = 15;        /* sizes; see above */
 static const double worthwhile = 0.02;      /* share of bad tets that a pass must cure to be followed by its like */
 static const double thorough_below = 0.985; /* quality below which the few that remain get more patience */
@@ -207,10 +211,11 @@ static void peel_all(work *w) {
   }
 }
 
-static bool is_crowded(const work *w) {
+/* Whether the bad tets are many, and more than a share of the layer. */
+static bool is_crowded(const work *w, double share) {
   size_t bad = 0;
   for (size_t t = 0; t < w->layer->tet_count; t++) bad += is_bad(w, (int32_t)t);
-  return bad > crowd_min && (double)bad > crowd * (double)w->layer->tet_count;
+  return bad > crowd_min && (double)bad > share * (double)w->layer->tet_count;
 }
 
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {
@@ -230,11 +235,14 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
   if (!laves__parallel_for(context, NULL, layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
   if (result == LAVES_OK) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
-  if (result == LAVES_OK) result = run_passes(&w, SMOOTH_PASSES, 1, error);
+  if (result == LAVES_OK) result = run_passes(&w, 1, 1, error);
+  const bool rough = is_crowded(&w, rough_share);
+  if (result == LAVES_OK) result = run_passes(&w, rough ? 1 : SMOOTH_PASSES - 1, 1, error);
   if (result == LAVES_OK) settle_all(&w);
-  const bool crowded = is_crowded(&w);
+  const bool crowded = is_crowded(&w, crowd);
   w.rounds = 1;
-  if (result == LAVES_OK) result = run_passes(&w, crowded ? CROWD_PASSES : CONTRACT_PASSES, 2, error);
+  if (rough) w.admit = rough_admit;
+  if (result == LAVES_OK) result = run_passes(&w, rough ? 1 : crowded ? CROWD_PASSES : CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) peel_all(&w);
   w.rounds = THOROUGH_ROUNDS;
   w.admit = thorough_below;

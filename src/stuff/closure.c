@@ -4,9 +4,10 @@
  * the way to where the tet is best: a site to its place, a cut to the middle of its edge. What is proved is that a tet all of
  * whose boundary vertices are relaxed is inside. A vertex is relaxed once, so this ends, and then every tet is inside: it
  * passed the test, or it has nothing left to relax. */
-#include "stuff/stuffing.h"
-
 #include <string.h>
+
+#include "base/predicates.h"
+#include "stuff/stuffing.h"
 
 typedef struct closure {
   laves__stuffing *s;
@@ -26,6 +27,14 @@ static bool is_inside(const laves__stuffing *s, const laves__cut_tet *tet) {
   return true;
 }
 
+/* Where four sites snap and none is inside, the tet is dropped; but it must not be turned inside out, or its neighbours would
+ * overlap. Relaxed, it is not. */
+static bool is_turned(const laves__cut_tet *tet) {
+  for (int k = 0; k < 4; k++)
+    if (tet->label[k] != LAVES__LABEL_ON) return false;
+  return laves__orient3d(tet->position[0], tet->position[1], tet->position[2], tet->position[3]) <= 0;
+}
+
 static void judge_records(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const closure *c = user;
@@ -33,7 +42,8 @@ static void judge_records(void *user, size_t begin, size_t end, int worker) {
     memset(c->miss[i], 0, sizeof c->miss[i]);
     for (int tet = 0; c->dirty[i] && tet < LAVES__C15_TETS; tet++) {
       laves__cut_tet now;
-      if (laves__stuffed_tet(c->s, (int32_t)i, tet, &now) && !is_inside(c->s, &now)) laves__flip_bit(c->miss[i], tet);
+      const bool kept = laves__stuffed_tet(c->s, (int32_t)i, tet, &now);
+      if (kept ? !is_inside(c->s, &now) : is_turned(&now)) laves__flip_bit(c->miss[i], tet);
     }
   }
 }

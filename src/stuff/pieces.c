@@ -31,7 +31,6 @@ bool laves__stuffed_tet(const laves__stuffing *s, int32_t record, int tet, laves
     out->label[k] = (int8_t)laves__site_label(s->lattice, corner[k]);
     any_in |= out->label[k] == LAVES__LABEL_IN;
   }
-  if (!any_in) return false;
   for (int k = 0; k < 4; k++) {
     out->id[k] = corner[k].cell >= 0 ? laves__site_id(corner[k]) : UINT32_MAX - (uint32_t)k;
     out->position[k] = corner_position(s, r, tet, k, corner[k]);
@@ -43,7 +42,7 @@ bool laves__stuffed_tet(const laves__stuffing *s, int32_t record, int tet, laves
       out->length2[i][o] = s->links.length2[corner[i].site][slot];
       out->fraction[i][o] = s->crossings[s->crossed[laves__site_id(corner[i])]].fraction[slot];
     }
-  return true;
+  return any_in;
 }
 
 /* ---- vertices ---- */

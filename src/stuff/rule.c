@@ -24,7 +24,7 @@ static const laves__thresholds relaxed = {
 
 /*   promised      proved         cosines of the proved                        thresholds   relaxation */
 const laves__guarantee laves__guarantees[LAVES__GUARANTEES] = {
-    {14.4, 149.65, 14.43, 149.61, 0.9684528146428742, -0.8626019756230764, &on_surface, 0},
+    {14.4, 149.65, 14.44, 149.60, 0.9684093068110037, -0.8625136692072575, &on_surface, 0},
     {20,   144,    20.01, 143.99, 0.9396329126977826, -0.808914394173963,  &relaxed,    SHARE(2206)},
     {22.5, 140,    22.51, 139.99, 0.9238127275812599, -0.7659322438502232, &relaxed,    SHARE(3245)},
     {24,   138,    24.01, 137.99, 0.9134744547927665, -0.7430280288371761, &relaxed,    SHARE(4185)},

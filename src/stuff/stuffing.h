@@ -61,7 +61,7 @@ laves_result laves__close(laves__stuffing *s, laves_error *error);
 /* Where a site of the zone stands. */
 laves__vec3 laves__stuffed_position(const laves__stuffing *s, laves__site site);
 
-/* The background tet `tet` of a record as it is now; false when it has no corner IN. */
+/* The background tet `tet` of a record as it is now; false when it has no corner IN and is dropped. */
 bool laves__stuffed_tet(const laves__stuffing *s, int32_t record, int tet, laves__cut_tet *out);
 
 /* The feet of the ON sites of the zone, and the cuts. `feet` may hold others already. */

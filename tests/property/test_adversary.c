@@ -162,8 +162,8 @@ static void the_surface_window_is_attained(void **state) {
   (void)state;
   extremes e;
   attack_all(&laves__guarantees[0], seeds(), &e);
-  assert_true(e.min <= laves__guarantees[0].proved_min + 0.03);
-  assert_true(e.max >= laves__guarantees[0].proved_max - 0.04);
+  assert_true(e.min <= laves__guarantees[0].proved_min + 0.01);
+  assert_true(e.max >= laves__guarantees[0].proved_max - 0.01);
 }
 
 static void the_relaxed_windows_hold(void **state) {
