@@ -84,6 +84,9 @@ static void say_stages(const mesh_run *all) {
   text_say("  write        %10s", text_seconds(&wall, all->plan.seconds));
 }
 
+/* A fault of the program, but the mesh is valid and may still be of use. */
+static bool promise_broken(const mesh_run *all) { return all->has_certificate && !all->certificate.promise_holds; }
+
 static void say_mesh(const session *run, const mesh_run *all) {
   text_buffer tets, vertices, time, memory;
   summary_input(&all->in, run->given->verbose);
@@ -96,6 +99,7 @@ static void say_mesh(const session *run, const mesh_run *all) {
   }
   if (run->given->verbose) say_stages(all);
   for (int i = 0; i < all->report.warning_count; ++i) text_warning("%s", all->report.warnings[i]);
+  if (promise_broken(all)) text_warning("the mesh leaves the window that was promised for it; please report this input");
   outputs_say(&all->plan);
 }
 
@@ -118,7 +122,7 @@ static laves_result mesh_steps(session *run, mesh_run *all) {
   if (all->plan.certificate[0]) result = certify(run, all);
   if (result == LAVES_OK) result = outputs_write(run, all->mesh, all->has_certificate ? &all->certificate : NULL, &all->plan);
   if (result == LAVES_OK && session_speaks(run)) say_mesh(run, all);
-  return result == LAVES_OK && missed ? LAVES_TARGET_MISSED : result;
+  return result == LAVES_OK && (missed || promise_broken(all)) ? LAVES_TARGET_MISSED : result;
 }
 
 /* ---- JSON ---- */
