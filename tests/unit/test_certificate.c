@@ -226,6 +226,43 @@ static void bounds_hold(void **state) {
   laves_mesh_free(mesh);
 }
 
+/* What samples of an implicit surface must not miss: walls on which the gradient vanishes, and a plate of a fifth of their
+ * distance that a ball has where its mesh has none. */
+static void implicit_surfaces(void **state) {
+  static const struct {
+    const char *expression;
+    double least, most; /* of the largest distance from the surface */
+  } cases[] = {{"box(2, 2, 2)", 0.7, 0.74},
+               {"sphere(1) + box(0.02, 0.8, 0.8):move(1.6, 0, 0)", 0.6, 0.85},
+               {"sphere(1) + box(0.8, 0.02, 0.8):move(0, 0, 1.4) - sphere(0.999)", 0.7, 0.99}};
+  laves_mesh *mesh = fixture_ball(*state, 6, 1);
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    laves_domain *domain;
+    laves_check check;
+    assert_int_equal(laves_domain_from_expression(*state, cases[i].expression, &domain, NULL), LAVES_OK);
+    assert_int_equal(laves_check_mesh(*state, mesh, domain, &check, NULL), LAVES_OK);
+    if (!(check.from_surface_max >= cases[i].least && check.from_surface_max <= cases[i].most))
+      fail_msg("%s: %g", cases[i].expression, check.from_surface_max);
+    assert_true(isnan(check.from_surface_at_most));
+    laves_domain_free(domain);
+  }
+  laves_mesh_free(mesh);
+}
+
+/* The bound from the mesh to an implicit surface holds, though feet come from iteration. */
+static void bound_of_iterated_feet(void **state) {
+  laves_mesh *mesh = fixture_ball(*state, 6, 1.05);
+  laves_domain *domain;
+  laves_check check;
+  assert_int_equal(laves_domain_from_expression(*state, "sphere(1)", &domain, NULL), LAVES_OK);
+  assert_int_equal(laves_check_mesh(*state, mesh, domain, &check, NULL), LAVES_OK);
+  assert_float_equal(check.to_surface_max, 0.05, 1e-9);
+  assert_true(check.to_surface_at_most >= check.to_surface_max);
+  assert_true(check.to_surface_at_most <= check.to_surface_max + check.to_surface_cover + 1e-5 * check.edge_mean);
+  laves_domain_free(domain);
+  laves_mesh_free(mesh);
+}
+
 /* ---- files ---- */
 
 /* Compares all members by the table, so that none is forgotten. */
@@ -365,6 +402,8 @@ int main(void) {
       cmocka_unit_test_setup_teardown(causes, set_up, tear_down),
       cmocka_unit_test_setup_teardown(cover_of_corners, set_up, tear_down),
       cmocka_unit_test_setup_teardown(bounds_hold, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(implicit_surfaces, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(bound_of_iterated_feet, set_up, tear_down),
       cmocka_unit_test_setup_teardown(through_a_file, set_up, tear_down),
       cmocka_unit_test_setup_teardown(long_expressions, set_up, tear_down),
       cmocka_unit_test_setup_teardown(refused_files, set_up, tear_down),
