@@ -15,6 +15,8 @@
 static const double difference_step = 6e-6;
 /* Where Newton's method stops, in the same unit; a thousand times the rounding of a coordinate. */
 static const double close_enough = 1e-13;
+/* A step that leaves less than this share of the value gains much. */
+static const double much = 0.1;
 /* Relative room for the rounding of the caller's values when a ball is judged. */
 static const double side_margin = 1e-9;
 
@@ -59,6 +61,11 @@ static laves__vec3 gradient(const solid *s, laves__vec3 p) {
   return v3_scale(v3(phi[0] - phi[1], phi[2] - phi[3], phi[4] - phi[5]), 0.5 / h);
 }
 
+static bool has_slope(laves__vec3 gradient) {
+  const double slope2 = v3_norm2(gradient);
+  return slope2 > 0 && isfinite(slope2);
+}
+
 /* A point of the surface between a and b, whose values differ in sign, by the Illinois variant of false position. */
 static laves__vec3 between(const solid *s, laves__vec3 a, double phi_a, laves__vec3 b, double phi_b) {
   for (int i = 0; i < BISECTION_MAX && v3_distance(a, b) > close_enough * s->diagonal; i++) {
@@ -99,13 +106,13 @@ static bool search(const solid *s, laves__vec3 p, double phi, laves__vec3 direct
   return false;
 }
 
-/* Newton's method from p; false when it leaves the ball or finds no slope. */
-static bool newton(const solid *s, laves__vec3 p, double phi, double reach, laves__vec3 *foot) {
+/* Newton's method from p, where the gradient is g; false when it leaves the ball or finds no slope. A gradient serves as long as
+ * its steps gain much. */
+static bool newton(const solid *s, laves__vec3 p, double phi, laves__vec3 g, double reach, laves__vec3 *foot) {
   laves__vec3 x = p;
   for (int i = 0; i < NEWTON_MAX; i++) {
-    const laves__vec3 g = gradient(s, x);
+    if (!has_slope(g)) return false;
     const double slope2 = v3_norm2(g);
-    if (!(slope2 > 0) || !isfinite(slope2)) return false;
     double step = -phi / slope2;
     const double length = fabs(step) * sqrt(slope2);
     if (length <= close_enough * s->diagonal) break;
@@ -117,9 +124,11 @@ static bool newton(const solid *s, laves__vec3 p, double phi, double reach, lave
       break;
     }
     if (v3_distance(next, p) > 2 * reach) return false;
+    const bool gained = fabs(phi_next) < much * fabs(phi);
     x = next;
     phi = phi_next;
     if (phi == 0) break;
+    if (!gained) g = gradient(s, x);
   }
   *foot = x;
   return true;
@@ -131,13 +140,16 @@ static bool project(const void *self, laves__vec3 point, double reach, uint32_t 
   const double phi = value(s, point);
   if (phi == 0) {
     *foot = point;
-  } else if (!newton(s, point, phi, reach, foot) || v3_distance(point, *foot) > reach) {
-    const laves__vec3 uphill = v3_unit(gradient(s, point));
-    const double sign = phi < 0 ? 1 : -1;
-    if (!search(s, point, phi, v3_scale(uphill, sign), reach, foot)) return false;
+  } else {
+    const laves__vec3 g = gradient(s, point);
+    if (!has_slope(g)) return false;
+    if ((!newton(s, point, phi, g, reach, foot) || v3_distance(point, *foot) > reach) &&
+        !search(s, point, phi, v3_scale(v3_unit(g), phi < 0 ? 1 : -1), reach, foot))
+      return false;
   }
-  *normal = v3_unit(gradient(s, *foot));
-  return v3_norm2(*normal) > 0 && v3_distance(point, *foot) <= reach;
+  const laves__vec3 slope = gradient(s, *foot);
+  *normal = v3_unit(slope);
+  return has_slope(slope) && v3_distance(point, *foot) <= reach;
 }
 
 static bool apart(laves__box3 b, laves__vec3 c, laves__vec3 h) {

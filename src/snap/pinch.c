@@ -81,28 +81,81 @@ static int surplus(const star_graph *g, uint32_t kept) {
 typedef struct repair {
   laves__lattice *lattice;
   star_graph graph[LAVES__C15_SITES];
-  uint8_t *verdicts; /* [record_count][24] for the parallel search */
+  uint8_t slot[LAVES__C15_TETS][4];      /* where a tet is in the star of its corner k */
+  uint32_t (*kept)[LAVES__C15_SITES];    /* [capacity] laves__star_kept() of ON sites, always as it is now */
+  uint8_t (*verdicts)[LAVES__C15_SITES]; /* [capacity], those of earlier rounds where nothing changed */
+  bool *dirty;                           /* [capacity] records to judge again */
+  size_t kept_capacity, verdict_capacity, dirty_capacity, known; /* records that have verdicts */
 } repair;
 
 static void judge_records(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const repair *w = user;
   for (size_t i = begin; i < end; i++) {
+    if (!w->dirty[i]) continue;
     const laves__record *r = &w->lattice->record[i];
     for (int site = 0; site < LAVES__C15_SITES; site++) {
-      uint8_t *v = &w->verdicts[i * LAVES__C15_SITES + (size_t)site];
-      *v = FAN;
-      if (r->label[site] == LAVES__LABEL_ON) *v = (uint8_t)judge(&w->graph[site], laves__star_kept(w->lattice, (int32_t)i, site));
+      w->verdicts[i][site] = FAN;
+      if (r->label[site] != LAVES__LABEL_ON) continue;
+      w->kept[i][site] = laves__star_kept(w->lattice, (int32_t)i, site);
+      w->verdicts[i][site] = (uint8_t)judge(&w->graph[site], w->kept[i][site]);
     }
   }
 }
 
-/* The surplus around the four corners of a tet. */
-static int tet_surplus(const repair *w, const laves__site corner[4]) {
-  int sum = 0;
-  for (int k = 0; k < 4; k++)
-    sum += surplus(&w->graph[corner[k].site], laves__star_kept(w->lattice, corner[k].cell, corner[k].site));
-  return sum;
+/* Verdicts for records that are new; false when memory is short. */
+static bool admit_records(repair *w) {
+  const size_t records = w->lattice->record_count;
+  laves_context *context = w->lattice->context;
+  if (!laves__grow(context, &w->kept, &w->kept_capacity, records, sizeof *w->kept) ||
+      !laves__grow(context, &w->verdicts, &w->verdict_capacity, records, sizeof *w->verdicts) ||
+      !laves__grow(context, &w->dirty, &w->dirty_capacity, records, sizeof *w->dirty))
+    return false;
+  for (; w->known < records; w->known++) w->dirty[w->known] = true;
+  return true;
+}
+
+/* What changes in a record changes stars in it and in those around. */
+static void soil(const repair *w, int32_t record) {
+  for (int k = 0; k < 27; k++) {
+    const int32_t around = w->lattice->record[record].around[k];
+    if (around >= 0 && (size_t)around < w->known) w->dirty[around] = true;
+  }
+}
+
+static void renew_kept(const repair *w, laves__site s) {
+  if (s.cell >= 0 && (size_t)s.cell < w->known && laves__site_label(w->lattice, s) == LAVES__LABEL_ON)
+    w->kept[s.cell][s.site] = laves__star_kept(w->lattice, s.cell, s.site);
+}
+
+/* After a change of the labels of a site and, perhaps, of its neighbours. */
+static void renew_around(const repair *w, int32_t record, int site) {
+  const laves__record *r = &w->lattice->record[record];
+  for (int k = 0; k < laves__c15_degree[site]; k++) {
+    const laves__site s = laves__neighbour(r, site, k);
+    renew_kept(w, s);
+    for (int j = 0; s.cell >= 0 && j < laves__c15_degree[s.site]; j++)
+      renew_kept(w, laves__neighbour(&w->lattice->record[s.cell], s.site, j));
+  }
+}
+
+/* How much adding a tet, or taking it away, lowers the surplus around its four corners. */
+static int toggle_gain(const repair *w, int tet, const laves__site corner[4]) {
+  int gain = 0;
+  for (int k = 0; k < 4; k++) {
+    const star_graph *g = &w->graph[corner[k].site];
+    const uint32_t kept = w->kept[corner[k].cell][corner[k].site];
+    gain += surplus(g, kept) - surplus(g, kept ^ UINT32_C(1) << w->slot[tet][k]);
+  }
+  return gain;
+}
+
+static void toggle(const repair *w, laves__record *owner, int tet) {
+  laves__site corner[4];
+  laves__tet_sites(owner, tet, corner);
+  laves__flip_bit(owner->solid, tet);
+  for (int k = 0; k < 4; k++) w->kept[corner[k].cell][corner[k].site] ^= UINT32_C(1) << w->slot[tet][k];
+  soil(w, (int32_t)(owner - w->lattice->record));
 }
 
 /* Adds or takes away the one tet with four corners ON around a site that lowers the surplus most; false when none does. */
@@ -120,16 +173,13 @@ static bool toggle_one(const repair *w, int32_t record, int site) {
     bool on = true;
     for (int j = 0; j < 4; j++) on &= corner[j].cell >= 0 && laves__site_label(w->lattice, corner[j]) == LAVES__LABEL_ON;
     if (!on) continue;
-    const int before = tet_surplus(w, corner);
-    laves__flip_bit(owner->solid, star.tet);
-    const int gain = before - tet_surplus(w, corner);
-    laves__flip_bit(owner->solid, star.tet);
+    const int gain = toggle_gain(w, star.tet, corner);
     if (gain <= best_gain) continue;
     best_gain = gain;
     best = owner;
     best_tet = star.tet;
   }
-  if (best) laves__flip_bit(best->solid, best_tet);
+  if (best) toggle(w, best, best_tet);
   return best != NULL;
 }
 
@@ -169,61 +219,73 @@ bool laves__part_site(const laves__lattice *lattice, int32_t record, int site, l
   return true;
 }
 
-/* One round: judges all ON sites, then acts in the order of their numbers. *again: something changed. */
-static laves_result repair_round(repair *w, laves__parted *parted, size_t *pinches, bool *again, laves_error *error) {
+/* Room around the walls, so that they can be trimmed; false when memory is short. */
+static bool make_room_at_walls(repair *w) {
   laves__lattice *lattice = w->lattice;
-  laves_context *context = lattice->context;
-  const size_t records = lattice->record_count;
-  laves_result result = LAVES_OK;
+  const size_t records = w->known;
+  for (size_t i = 0; i < records; i++) {
+    bool wall = false;
+    for (int site = 0; site < LAVES__C15_SITES; site++) wall |= w->verdicts[i][site] == WALL;
+    if (wall &&
+        !make_room(lattice, (int32_t[3]){lattice->record[i].xyz[0], lattice->record[i].xyz[1], lattice->record[i].xyz[2]}))
+      return false;
+  }
+  if (lattice->record_count > records) laves__lattice_link(lattice);
+  return admit_records(w);
+}
+
+/* Acts at one site; *again: something changed. False when memory is short. */
+static bool mend_site(const repair *w, int32_t record, int site, laves__parted *parted, size_t *pinches, bool *again) {
+  laves__lattice *lattice = w->lattice;
+  const verdict found = (verdict)w->verdicts[record][site];
+  while (found != INTERIOR && toggle_one(w, record, site)) *again = true;
+  const bool on = lattice->record[record].label[site] == LAVES__LABEL_ON; /* earlier changes may have ended that */
+  const verdict now = on ? judge(&w->graph[site], w->kept[record][site]) : FAN;
+  if (now == INTERIOR) {
+    lattice->record[record].label[site] = LAVES__LABEL_IN;
+  } else if (now == WALL && found == WALL) { /* only there room was made */
+    trim(lattice, record, site);
+    ++*pinches;
+  } else {
+    return now != PARTS || laves__part_site(lattice, record, site, parted);
+  }
+  renew_around(w, record, site);
+  soil(w, record);
+  *again = true;
+  return true;
+}
+
+/* One round: judges the ON sites around which something changed, then acts in the order of their numbers. */
+static laves_result repair_round(repair *w, laves__parted *parted, size_t *pinches, bool *again, laves_error *error) {
+  laves_context *context = w->lattice->context;
   parted->count = 0;
   *again = false;
-  w->verdicts = laves__alloc(context, records, LAVES__C15_SITES);
-  if (!w->verdicts) return laves__fail_memory(context, error);
-  bool memory = true;
-  if (!laves__parallel_for(context, "snap", records, 16, judge_records, w)) {
-    result = laves__fail_cancelled(error);
-    goto cleanup;
-  }
-  bool grown = false;
-  for (size_t i = 0; memory && i < records; i++) {
-    bool wall = false;
-    for (int site = 0; site < LAVES__C15_SITES; site++) wall |= w->verdicts[i * LAVES__C15_SITES + (size_t)site] == WALL;
-    if (!wall) continue;
-    memory = make_room(lattice, (int32_t[3]){lattice->record[i].xyz[0], lattice->record[i].xyz[1], lattice->record[i].xyz[2]});
-    grown = true;
-  }
-  if (memory && grown) laves__lattice_link(lattice);
-  for (size_t id = 0; memory && id < records * LAVES__C15_SITES; id++) {
-    const int32_t record = (int32_t)(id / LAVES__C15_SITES);
+  if (!admit_records(w)) return laves__fail_memory(context, error);
+  if (!laves__parallel_for(context, "snap", w->known, 16, judge_records, w)) return laves__fail_cancelled(error);
+  memset(w->dirty, 0, w->known * sizeof *w->dirty);
+  const size_t records = w->known;
+  if (!make_room_at_walls(w)) return laves__fail_memory(context, error);
+  for (size_t id = 0; id < records * LAVES__C15_SITES; id++) {
+    const size_t record = id / LAVES__C15_SITES;
     const int site = (int)(id % LAVES__C15_SITES);
-    if (w->verdicts[id] == FAN) continue;
-    while (w->verdicts[id] != INTERIOR && toggle_one(w, record, site)) *again = true;
-    const verdict now = judge(&w->graph[site], laves__star_kept(lattice, record, site)); /* after earlier changes */
-    if (now == INTERIOR) {
-      lattice->record[record].label[site] = LAVES__LABEL_IN;
-      *again = true;
-    } else if (now == PARTS) {
-      memory = laves__part_site(lattice, record, site, parted);
-    } else if (now == WALL && w->verdicts[id] == WALL) { /* only there room was made */
-      trim(lattice, record, site);
-      ++*pinches;
-      *again = true;
-    }
+    if (w->verdicts[record][site] != FAN && !mend_site(w, (int32_t)record, site, parted, pinches, again))
+      return laves__fail_memory(context, error);
   }
-  if (!memory) result = laves__fail_memory(context, error);
-cleanup:
-  laves__free(context, w->verdicts, records, LAVES__C15_SITES);
-  w->verdicts = NULL;
-  return result;
+  return LAVES_OK;
 }
 
 laves_result laves__pinch_repair(laves__lattice *lattice, laves__parted *parted, size_t *pinches, laves_error *error) {
   repair w = {.lattice = lattice};
-  for (int site = 0; site < LAVES__C15_SITES; site++) w.graph[site] = graph_of(site);
-  for (bool again = true; again;) {
-    const laves_result result = repair_round(&w, parted, pinches, &again, error);
-    if (result != LAVES_OK) return result;
+  for (int site = 0; site < LAVES__C15_SITES; site++) {
+    w.graph[site] = graph_of(site);
+    for (int k = 0; k < laves__c15_star_size[site]; k++)
+      w.slot[laves__c15_star[site][k].tet][laves__c15_star[site][k].corner] = (uint8_t)k;
   }
-  *pinches += parted->count;
-  return LAVES_OK;
+  laves_result result = LAVES_OK;
+  for (bool again = true; again && result == LAVES_OK;) result = repair_round(&w, parted, pinches, &again, error);
+  if (result == LAVES_OK) *pinches += parted->count;
+  laves__free(lattice->context, w.kept, w.kept_capacity, sizeof *w.kept);
+  laves__free(lattice->context, w.verdicts, w.verdict_capacity, sizeof *w.verdicts);
+  laves__free(lattice->context, w.dirty, w.dirty_capacity, sizeof *w.dirty);
+  return result;
 }
