@@ -8,8 +8,12 @@
 #include "options.h"
 
 /* What the kinds are called in the dump. */
-static const char *const kind_names[] = {"flag",  "text",   "texts", "real",      "count",
-                                         "bytes", "window", "cells", "alignment", "format"};
+static const char *const kind_names[] = {
+    [OPTION_FLAG] = "flag",     [OPTION_WORD] = "text",           [OPTION_WORDS] = "texts",   [OPTION_REAL] = "real",
+    [OPTION_COUNT] = "count",   [OPTION_BYTES] = "bytes",         [OPTION_WINDOW] = "window", [OPTION_CELLS] = "cells",
+    [OPTION_FORMAT] = "format", [OPTION_ALIGNMENT] = "alignment", [OPTION_METHOD] = "method",
+};
+_Static_assert(sizeof kind_names / sizeof kind_names[0] == OPTION_KINDS, "a kind has no name");
 
 /* Prints words from column `indent` on, with line breaks before column 100. */
 static void print_wrapped(FILE *file, const char *text, int column, int indent) {

@@ -66,6 +66,8 @@ typedef enum option_kind {
   OPTION_METHOD,    /* laves_method */
 } option_kind;
 
+enum { OPTION_KINDS = OPTION_METHOD + 1 };
+
 /* One row of the table. */
 typedef struct option {
   const char *name; /* without dashes */
