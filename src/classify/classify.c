@@ -286,14 +286,15 @@ static bool seal_cells(laves__lattice *l) {
   return true;
 }
 
-/* Likewise, no tet around an inner site may belong to an outside cell without a record. */
+/* Likewise, no tet around a site may belong to a cell without a record that lies on the other side. */
 static bool seal_owners(laves__lattice *l, size_t index) {
   const int32_t at[3] = {l->record[index].xyz[0], l->record[index].xyz[1], l->record[index].xyz[2]};
   for (int site = 0; site < LAVES__C15_SITES; site++)
-    for (int k = 0; k < laves__c15_star_size[site] && l->record[index].sign[site] < 0; k++) {
+    for (int k = 0; k < laves__c15_star_size[site]; k++) {
       const int cell = laves__c15_star[site][k].cell;
       const int32_t n[3] = {at[0] + cell % 3 - 1, at[1] + cell / 3 % 3 - 1, at[2] + cell / 9 - 1};
-      if (laves__lattice_cell(l, n[0], n[1], n[2]) == LAVES__OUT && is_in_directory(l, n) &&
+      const int32_t beyond = l->record[index].sign[site] < 0 ? LAVES__OUT : LAVES__IN;
+      if (laves__lattice_cell(l, n[0], n[1], n[2]) == beyond && is_in_directory(l, n) &&
           laves__lattice_add_record(l, n[0], n[1], n[2]) < 0)
         return false;
     }
@@ -307,8 +308,8 @@ static bool seal_record(laves__lattice *l, size_t index) {
   for (int site = 0; site < LAVES__C15_SITES; site++) has[r->sign[site] > 0] = true;
   for (int k = 0; k < 27; k++)
     if (r->around[k] < 0) beside[r->around[k] == LAVES__OUT] = true;
-  if (has[0] && beside[1] && !seal_owners(l, index)) return false;
   if (!(has[0] && beside[1]) && !(has[1] && beside[0])) return true;
+  if (!seal_owners(l, index)) return false;
   const int32_t at[3] = {r->xyz[0], r->xyz[1], r->xyz[2]};
   for (int site = 0; site < LAVES__C15_SITES; site++)
     for (int k = 0; k < laves__c15_degree[site]; k++) {
