@@ -162,7 +162,7 @@ static laves_result list_window(const listing *l, laves_exception_kind kind, con
 /* Inside by more than the margin, so that no rounding can have hidden an exception. */
 static laves_result judge_promise(const listing *l, laves_error *error) {
   laves_certificate *c = l->c;
-  c->promise_holds = c->check.valid;
+  c->promise_holds = !c->has_promise;
   if (!c->has_promise) return LAVES_OK;
   const limits promised = {c->promised_min_dihedral > 0 ? c->promised_min_dihedral + c->angle_margin : 0,
                            c->promised_max_dihedral < 180 ? c->promised_max_dihedral - c->angle_margin : 180, 0};
