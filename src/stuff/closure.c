@@ -71,7 +71,6 @@ static bool relax_cut(laves__stuffing *s, laves__site inner, laves__site outer, 
   note_move(s, fabs(way) * sqrt(s->links.length2[inner.site][slot]));
   c->fraction[slot] += way;
   c->relaxed |= (uint16_t)(1u << slot);
-  c->moved |= (uint16_t)(1u << slot);
   return true;
 }
 

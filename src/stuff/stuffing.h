@@ -15,7 +15,6 @@
 typedef struct laves__crossings {
   double fraction[LAVES__C15_MAX_DEGREE]; /* of the edge to neighbour k, where `set` has bit k */
   uint16_t set, relaxed;                  /* bits of neighbours */
-  uint16_t moved;                         /* bits of crossings that are no longer where the surface is */
 } laves__crossings;
 
 /* How a site snaps. */

@@ -140,7 +140,6 @@ static void unsnap(laves__stuffing *s, laves__site site) {
     const double share = outer ? 1 - c->fraction[slot] : c->fraction[slot];
     if (share >= least) continue;
     c->fraction[slot] = outer ? 1 - least : least;
-    c->moved |= (uint16_t)(1u << slot);
   }
 }
 
