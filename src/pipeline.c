@@ -96,6 +96,7 @@ static laves_result snap(run *r) {
   begin_stage(r);
   laves__layer_free(&r->layer);
   memset(&r->counts, 0, sizeof r->counts);
+  memset(&r->stuffed, 0, sizeof r->stuffed);
   const laves_result result = laves__snap(&r->frame, &r->lattice, &r->layer, &r->counts, r->error);
   end_stage(r, "snap");
   return result;
@@ -105,6 +106,8 @@ static laves_result stuff(run *r) {
   begin_stage(r);
   laves__layer_free(&r->layer);
   const laves_result result = laves__stuff(&r->frame, r->guarantee, &r->lattice, &r->layer, &r->stuffed, r->error);
+  if (r->stuffed.left == 0) memset(&r->counts, 0, sizeof r->counts); /* they tell of a boundary that is gone */
+  r->counts.snapped = r->stuffed.left;
   end_stage(r, "stuff");
   return result;
 }
@@ -288,7 +291,7 @@ laves_result laves_generate(laves_context *context, const laves_domain *domain, 
 
   laves_result result = laves__options_check(options, error);
   if (result == LAVES_OK) result = choose_frame(&r);
-  r.guarantee = laves__options_guarantee(options);
+  if (result == LAVES_OK) r.guarantee = laves__options_guarantee(options);
   if (result == LAVES_OK) result = make_boundary(&r);
   if (result == LAVES_OK) result = improve_and_keep_promise(&r);
   if (result == LAVES_OK) result = make_mesh(&r, mesh);

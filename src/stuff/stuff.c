@@ -34,6 +34,16 @@ static size_t count_vertices(const laves__stuffing *s, const laves__cuts *cuts) 
   return count;
 }
 
+static size_t count_left(const laves__lattice *lattice, const laves__layer *layer) {
+  size_t count = 0;
+  for (size_t v = 0; v < layer->vertex_count; v++) {
+    const uint32_t id = layer->origin[v];
+    if (layer->depth[v] != 0 || id == LAVES__NO_ORIGIN) continue;
+    count += !(lattice->record[id / LAVES__C15_SITES].zone >> id % LAVES__C15_SITES & 1);
+  }
+  return count;
+}
+
 static laves_result stuff_once(laves__stuffing *s, laves__parted *parted, bool *grown, laves__stuff_counts *counts,
                                laves_error *error) {
   counts->unsnapped = 0;
@@ -67,6 +77,7 @@ laves_result laves__stuff(const laves__frame *frame, const laves__guarantee *gua
     counts->relaxed_max = s.relaxed_max;
   }
   if (result == LAVES_OK) result = laves__layer_build(&feet, lattice, &parted, &cuts, layer, error);
+  if (result == LAVES_OK) counts->left = count_left(lattice, layer);
   laves__free_stuffing(&s);
   laves__feet_free(&feet);
   laves__cuts_free(&cuts);

@@ -64,7 +64,38 @@ static void every_mesh_is_inside_the_window(void **state) {
   laves_context_free(context);
 }
 
+static laves_report report_of_noise(laves_context *context, laves_method method) {
+  noise n = {.kind = NOISE_FRACTAL, .seed = 5, .scale = 3};
+  const laves_function function = noise_function(&n);
+  laves_options options = options_of_size(0.2);
+  options.method = method;
+  options.improve = false;
+  laves_domain *domain;
+  laves_mesh *mesh;
+  laves_report report;
+  assert_int_equal(laves_domain_from_function(context, &function, &domain, NULL), LAVES_OK);
+  assert_int_equal(laves_generate(context, domain, &options, &mesh, &report, NULL), LAVES_OK);
+  laves_mesh_free(mesh);
+  laves_domain_free(domain);
+  return report;
+}
+
+/* Where everything is made again by stuffing, the report does not tell of what snapping had made. */
+static void reports_tell_of_the_last_boundary(void **state) {
+  (void)state;
+  laves_context *context = laves_context_create(NULL);
+  const laves_report chosen = report_of_noise(context, LAVES_METHOD_AUTO), asked = report_of_noise(context, LAVES_METHOD_STUFF);
+  assert_true(asked.stuffed_vertices > 0);
+  assert_int_equal(chosen.stuffed_vertices, asked.stuffed_vertices);
+  assert_int_equal(chosen.snapped_vertices, 0);
+  assert_int_equal(chosen.pinches, asked.pinches);
+  laves_context_free(context);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(every_mesh_is_inside_the_window)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_mesh_is_inside_the_window),
+      cmocka_unit_test(reports_tell_of_the_last_boundary),
+  };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
