@@ -13,6 +13,8 @@
 
 /* How far the count of tets or vertices may be from a wished one, as laves.h promises. */
 static const double count_slack = 0.03;
+/* Share of the solid's volume that a mesh may lack or add without a warning: smooth solids differ by 2 %. */
+static const double volume_slack = 0.1;
 
 typedef struct mesh_run {
   input in;
@@ -87,6 +89,24 @@ static void say_stages(const mesh_run *all) {
 /* A fault of the program, but the mesh is valid and may still be of use. */
 static bool promise_broken(const mesh_run *all) { return all->has_certificate && !all->certificate.promise_holds; }
 
+static void say_relaxed(const mesh_run *all) {
+  const laves_report *report = &all->report;
+  if (report->relaxed_vertices == 0) return;
+  text_buffer vertices;
+  text_say("  %s of the boundary relaxed for the guarantee: moved off the surface by up to %.4g (%.3f sizes)%s",
+           text_plural(&vertices, report->relaxed_vertices, "vertex"), report->relaxed_max, report->relaxed_max / report->size,
+           all->options.improve ? ", before improvement" : "");
+}
+
+/* The angles may be fine though most of the solid is lost; no other line would stand out. */
+static void warn_of_volume(const mesh_run *all) {
+  if (!all->has_certificate) return;
+  const double share = all->certificate.check.volume / all->certificate.check.domain_volume;
+  if (!(fabs(share - 1) > volume_slack)) return;
+  text_warning("the mesh has %.3g %% of the volume of the solid, which is too thin or rough for the size; choose a smaller one",
+               100 * share);
+}
+
 static void say_mesh(const session *run, const mesh_run *all) {
   text_buffer tets, vertices, time, memory;
   summary_input(&all->in, run->given->verbose);
@@ -97,8 +117,10 @@ static void say_mesh(const session *run, const mesh_run *all) {
     summary_check(&all->certificate.check);
     statement_say(&all->certificate, false);
   }
+  say_relaxed(all);
   if (run->given->verbose) say_stages(all);
   for (int i = 0; i < all->report.warning_count; ++i) text_warning("%s", all->report.warnings[i]);
+  warn_of_volume(all);
   if (promise_broken(all)) text_warning("the mesh leaves the window that was promised for it; please report this input");
   outputs_say(&all->plan);
 }

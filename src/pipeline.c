@@ -263,7 +263,8 @@ static laves_result judge(run *r, const laves_mesh *mesh) {
   if (r->counts.specks)
     warn(r, "%zu parts of a few tetrahedra, beyond places thinner than the size, were dropped", r->counts.specks);
   if (report->off_surface)
-    warn(r, "%zu boundary vertices stand off the surface, where it is too sharp or thin for the size", report->off_surface);
+    warn(r, "%zu boundary vertices stand off the surface, where it is too sharp or thin for the size%s", report->off_surface,
+         report->relaxed_vertices ? ", or where the guarantee moved them" : "");
   if (report->outside_window)
     warn(r, "%zu tetrahedra are outside the asked window of %g to %g degrees and volume-length %g", report->outside_window,
          o->min_dihedral, o->max_dihedral, o->volume_length);
