@@ -79,7 +79,8 @@ const option option_rows[] = {
      "stuffed where snapping leaves the guaranteed window"},
     {"guarantee", 0, MESH, IN_SHAPE, OPTION_REAL, "DEG", "degrees", false, 0, 28, "14.4", MEMBER(guarantee), 0,
      "smallest dihedral angle promised whatever the shape (docs/proof.md): 14.4 keeps every boundary vertex on the surface; 20, "
-     "22.5, 24 and 28 may move some off it, where the surface is rougher than the size; 0: no promise"},
+     "22.5, 24 and 28 may move some off it, where the surface is rougher than the size; between these the next higher; 0: no "
+     "promise, as with --method snap"},
     {"no-improve", 0, MESH, IN_SHAPE, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(no_improve), 0,
      "leave the boundary layer as it was made"},
     {"window", 0, MESH, IN_SHAPE, OPTION_WINDOW, "LO,HI", "degrees", false, 0, 180, "40,125", MEMBER(window), 0,
