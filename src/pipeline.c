@@ -108,6 +108,7 @@ static laves_result stuff(run *r) {
   const laves_result result = laves__stuff(&r->frame, r->guarantee, &r->lattice, &r->layer, &r->stuffed, r->error);
   if (r->stuffed.left == 0) memset(&r->counts, 0, sizeof r->counts); /* they tell of a boundary that is gone */
   r->counts.snapped = r->stuffed.left;
+  r->counts.specks = r->stuffed.specks;
   end_stage(r, "stuff");
   return result;
 }

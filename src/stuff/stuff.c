@@ -38,7 +38,7 @@ static size_t count_left(const laves__lattice *lattice, const laves__layer *laye
   size_t count = 0;
   for (size_t v = 0; v < layer->vertex_count; v++) {
     const uint32_t id = layer->origin[v];
-    if (layer->depth[v] != 0 || id == LAVES__NO_ORIGIN) continue;
+    if (layer->depth[v] != 0 || id == LAVES__NO_ORIGIN || layer->star[v].count == 0) continue;
     count += !(lattice->record[id / LAVES__C15_SITES].zone >> id % LAVES__C15_SITES & 1);
   }
   return count;
@@ -77,7 +77,10 @@ laves_result laves__stuff(const laves__frame *frame, const laves__guarantee *gua
     counts->relaxed_max = s.relaxed_max;
   }
   if (result == LAVES_OK) result = laves__layer_build(&feet, lattice, &parted, &cuts, layer, error);
-  if (result == LAVES_OK) counts->left = count_left(lattice, layer);
+  if (result == LAVES_OK) {
+    counts->specks = laves__layer_drop_specks(layer);
+    counts->left = count_left(lattice, layer);
+  }
   laves__free_stuffing(&s);
   laves__feet_free(&feet);
   laves__cuts_free(&cuts);

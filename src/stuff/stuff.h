@@ -17,6 +17,7 @@
 typedef struct laves__stuff_counts {
   size_t vertices;    /* boundary vertices made by stuffing */
   size_t left;        /* sites beyond the zones that are boundary vertices, as snapping made them */
+  size_t specks;      /* parts too small to keep, as snap.h tells; none that stuffing made */
   size_t unsnapped;   /* sites that came back because the boundary would have pinched */
   size_t relaxed;     /* boundary vertices moved for the sake of the window */
   double relaxed_max; /* the furthest, in sizes */
