@@ -165,16 +165,32 @@ static double distance_without_foot(const measuring *m, laves__vec3 local, doubl
   return fabs(phi);
 }
 
-static double distance_to_surface(const measuring *m, laves__vec3 local, uint32_t *hint, double *slack) {
-  laves__vec3 foot, normal;
-  for (double reach = m->reach;; reach *= REACH_GROWTH) {
-    if (reach > m->reach_max) reach = m->reach_max;
-    if (m->oracle->project(m->oracle->self, local, reach, hint, &foot, &normal)) {
-      *slack = foot_slack(m, foot, normal);
-      return v3_distance(local, foot);
-    }
-    *hint = LAVES__NO_HINT;
+/* `first` is what was found within the first reach. */
+static double distance_to_surface(const measuring *m, laves__vec3 local, const laves__projection *first, double *slack) {
+  laves__projection answer = *first;
+  for (double reach = m->reach; !answer.found; reach *= REACH_GROWTH) {
     if (reach >= m->reach_max) return distance_without_foot(m, local, slack);
+    answer.hint = LAVES__NO_HINT;
+    const double next = fmin(reach * REACH_GROWTH, m->reach_max);
+    answer.found = m->oracle->project(m->oracle->self, local, next, &answer.hint, &answer.foot, &answer.normal);
+  }
+  *slack = foot_slack(m, answer.foot, answer.normal);
+  return v3_distance(local, answer.foot);
+}
+
+/* Within the first reach: all at once where the domain can, else each from the foot of the one before. */
+static void find_first(const measuring *m, size_t count, const laves__vec3 *local, laves__projection *first) {
+  const laves__oracle *oracle = m->oracle;
+  const double reach = fmin(m->reach, m->reach_max);
+  uint32_t hint = LAVES__NO_HINT;
+  if (oracle->project_many) {
+    oracle->project_many(oracle->self, count, local, reach, first);
+    return;
+  }
+  for (size_t i = 0; i < count; i++) {
+    first[i].hint = hint;
+    first[i].found = oracle->project(oracle->self, local[i], reach, &first[i].hint, &first[i].foot, &first[i].normal);
+    hint = first[i].found ? first[i].hint : LAVES__NO_HINT;
   }
 }
 
@@ -184,11 +200,13 @@ static void project_chunks(void *user, size_t begin, size_t end, int worker) {
   const measuring *m = user;
   (void)worker;
   for (size_t chunk = begin; chunk < end; chunk++) {
-    uint32_t hint = LAVES__NO_HINT;
-    for (size_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < m->samples->boundary_count; i++) {
-      laves__sample *sample = &m->samples->items[i];
-      sample->distance = distance_to_surface(m, v3_sub(sample->point, m->oracle->origin), &hint, &sample->slack);
-    }
+    laves__sample *samples = &m->samples->items[chunk * CHUNK];
+    const size_t left = m->samples->boundary_count - chunk * CHUNK, count = left < CHUNK ? left : CHUNK;
+    laves__vec3 local[CHUNK];
+    laves__projection first[CHUNK];
+    for (size_t i = 0; i < count; i++) local[i] = v3_sub(samples[i].point, m->oracle->origin);
+    find_first(m, count, local, first);
+    for (size_t i = 0; i < count; i++) samples[i].distance = distance_to_surface(m, local[i], &first[i], &samples[i].slack);
   }
 }
 

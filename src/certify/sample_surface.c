@@ -122,25 +122,45 @@ static bool sample_crossing(const search *s, const block *b, int x, int y, int z
   return true;
 }
 
-/* A place of the surface in the cell, if there is one that can be found: the foot of its centre where that lies in it. */
-static bool sample_cell(const search *s, const block *b, int x, int y, int z, laves__vec3 *place) {
-  const laves__vec3 centre = v3_mad(b->corner, v3(x + 0.5, y + 0.5, z + 0.5), b->width);
-  uint32_t hint = LAVES__NO_HINT;
-  laves__vec3 normal;
-  if (!s->oracle->project(s->oracle->self, centre, b->width, &hint, place, &normal)) return sample_crossing(s, b, x, y, z, place);
-  const laves__vec3 away = v3_sub(*place, centre);
-  return fmax(fabs(away.x), fmax(fabs(away.y), fabs(away.z))) <= b->width / 2;
+/* The cells to look into, in order; returns how many. */
+static size_t list_cells(const block *b, uint16_t cells[BLOCK_CELLS]) {
+  size_t count = 0;
+  for (int i = 0; i < BLOCK_CELLS; i++) {
+    if (b->kinds[i] == EMPTY) continue;
+    const bool beside = b->kinds[i] == NEAR_ZERO && has_crossed_neighbour(b, i % CELLS, i / CELLS % CELLS, i / (CELLS * CELLS));
+    if (!beside) cells[count++] = (uint16_t)i;
+  }
+  return count;
 }
 
+/* Whether a foot lies in the cell of this centre. */
+static bool is_in_cell(laves__vec3 foot, laves__vec3 centre, double width) {
+  const laves__vec3 away = v3_sub(foot, centre);
+  return fmax(fabs(away.x), fmax(fabs(away.y), fabs(away.z))) <= width / 2;
+}
+
+/* A place of the surface in each cell where one can be found: the foot of its centre, or a crossing where there is no foot. */
 static size_t sample_block(const search *s, laves__vec3 centre, laves__vec3 *found) {
   block b = {.width = 2 * s->half / CELLS, .corner = v3_sub(centre, v3(s->half, s->half, s->half))};
-  size_t count = 0;
+  uint16_t cells[BLOCK_CELLS];
+  laves__vec3 centres[BLOCK_CELLS];
+  laves__projection answers[BLOCK_CELLS];
   evaluate_nodes(s, &b);
   find_kinds(&b);
-  for (int i = 0; i < BLOCK_CELLS; i++) {
-    const int x = i % CELLS, y = i / CELLS % CELLS, z = i / (CELLS * CELLS);
-    if (b.kinds[i] == EMPTY || (b.kinds[i] == NEAR_ZERO && has_crossed_neighbour(&b, x, y, z))) continue;
-    count += sample_cell(s, &b, x, y, z, &found[count]);
+  const size_t listed = list_cells(&b, cells);
+  for (size_t k = 0; k < listed; k++) {
+    const int i = cells[k];
+    const laves__vec3 middle = v3(i % CELLS + 0.5, i / CELLS % CELLS + 0.5, i / (CELLS * CELLS) + 0.5);
+    centres[k] = v3_mad(b.corner, middle, b.width);
+    answers[k].hint = LAVES__NO_HINT;
+  }
+  laves__project_many(s->oracle, listed, centres, b.width, answers);
+  size_t count = 0;
+  for (size_t k = 0; k < listed; k++) {
+    const int i = cells[k];
+    found[count] = answers[k].foot;
+    count += answers[k].found ? is_in_cell(answers[k].foot, centres[k], b.width)
+                              : sample_crossing(s, &b, i % CELLS, i / CELLS % CELLS, i / (CELLS * CELLS), &found[count]);
   }
   return count;
 }

@@ -126,6 +126,18 @@ laves_result laves_domain_from_function(laves_context *context, const laves_func
   return finish(laves__function_build(context, function, made, error), made, domain);
 }
 
+void laves__project_many(const laves__oracle *oracle, size_t count, const laves__vec3 *points, double reach,
+                         laves__projection *answers) {
+  if (oracle->project_many) {
+    oracle->project_many(oracle->self, count, points, reach, answers);
+    return;
+  }
+  for (size_t i = 0; i < count; i++) {
+    laves__projection *a = &answers[i];
+    a->found = oracle->project(oracle->self, points[i], reach, &a->hint, &a->foot, &a->normal);
+  }
+}
+
 void laves_domain_free(laves_domain *domain) {
   if (!domain) return;
   laves_context *context = domain->context;

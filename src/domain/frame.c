@@ -47,6 +47,22 @@ bool laves__frame_project(const laves__frame *frame, laves__vec3 point, double r
   return v3_finite(*foot) && v3_finite(*normal);
 }
 
+void laves__frame_project_many(const laves__frame *frame, size_t count, const laves__vec3 *points, double reach,
+                               laves__projection *answers) {
+  laves__vec3 local[CHUNK];
+  for (size_t begin = 0; begin < count; begin += CHUNK) {
+    const size_t n = count - begin < CHUNK ? count - begin : CHUNK;
+    for (size_t i = 0; i < n; i++) local[i] = to_local(frame, points[begin + i]);
+    laves__project_many(frame->oracle, n, local, reach * frame->size, answers + begin);
+    for (laves__projection *a = answers + begin; a < answers + begin + n; a++) {
+      if (!a->found) continue;
+      a->foot = from_local(frame, a->foot);
+      a->normal = m3_mul_transposed(&frame->rotation, a->normal);
+      a->found = v3_finite(a->foot) && v3_finite(a->normal);
+    }
+  }
+}
+
 /* Half the extent, along one local axis, of a turned cube. */
 static double turned_half(laves__vec3 row, double half) { return half * (fabs(row.x) + fabs(row.y) + fabs(row.z)); }
 

@@ -28,6 +28,10 @@ void laves__frame_evaluate(const laves__frame *frame, size_t count, const laves_
 bool laves__frame_project(const laves__frame *frame, laves__vec3 point, double reach, uint32_t *hint, laves__vec3 *foot,
                           laves__vec3 *normal);
 
+/* Many at once; see laves__project_many. */
+void laves__frame_project_many(const laves__frame *frame, size_t count, const laves__vec3 *points, double reach,
+                               laves__projection *answers);
+
 /* See laves__oracle.side: for the lattice box centre +- half in each axis. */
 laves__side laves__frame_side(const laves__frame *frame, laves__vec3 centre, double half);
 

@@ -13,6 +13,13 @@ typedef enum laves__side { LAVES__OUTSIDE = 1, LAVES__UNDECIDED = 0, LAVES__INSI
 /* No hint: any query may start cold. */
 #define LAVES__NO_HINT UINT32_MAX
 
+/* The answer of a projection. */
+typedef struct laves__projection {
+  laves__vec3 foot, normal; /* undefined where none was found */
+  uint32_t hint;            /* before: to start from; after: of the foot */
+  bool found;
+} laves__projection;
+
 typedef struct laves__oracle {
   void *self;
   laves__vec3 origin; /* input coordinates of the local zero point */
@@ -29,6 +36,9 @@ typedef struct laves__oracle {
    * gradient), its outward unit normal, and a new hint. *hint may be LAVES__NO_HINT. `reach` is the distance beyond which
    * the caller has no use for the answer. False when none was found within reach; outputs then undefined. */
   bool (*project)(const void *self, laves__vec3 point, double reach, uint32_t *hint, laves__vec3 *foot, laves__vec3 *normal);
+
+  /* The same for many points, with the same answers; NULL: they are projected one by one. */
+  void (*project_many)(const void *self, size_t count, const laves__vec3 *points, double reach, laves__projection *answers);
 
   /* Which side the whole ball (centre, radius) and the whole box (centre +- half) lie on; either may be used, both contain
    * the region that the caller means. UNDECIDED is always a correct answer; the others are certain. */
@@ -51,6 +61,10 @@ typedef struct laves__oracle {
 
   void (*free)(laves_context *context, void *self);
 } laves__oracle;
+
+/* Projects many points, in one call or one by one; answers[i].hint must be set. */
+void laves__project_many(const laves__oracle *oracle, size_t count, const laves__vec3 *points, double reach,
+                         laves__projection *answers);
 
 /* The public handle. */
 struct laves_domain {

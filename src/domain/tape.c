@@ -6,18 +6,10 @@
 #include "domain/tape.h"
 
 #include "domain/elementary.h"
+#include "domain/wide.h"
 
 /* Doubles in the register block of a run: 128 KiB, or 2 KiB for a few points. */
 enum { SCRATCH = 4 * LAVES__REGISTER_LIMIT, BATCH = 256, FEW = 256 };
-
-/* The same loops for wider vectors where the machine has them; without fused multiply-add, so with the same bits.
- * Sanitizers start too late for the resolvers of clones. */
-#if defined(__x86_64__) && defined(__linux__) && defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__) && defined(__GNUC__) && !defined(__clang__)
-#define WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define WIDE
-#endif
 
 /* ---- compiling ---- */
 
@@ -213,7 +205,7 @@ static inline double mul_of(double a, double b) { return a * b; }
 static inline double div_of(double a, double b) { return a / b; }
 
 /* The block holds register r at block + r * count. */
-WIDE static void run_batch(const laves__tape *tape, size_t count, double *block) {
+LAVES__WIDE static void run_batch(const laves__tape *tape, size_t count, double *block) {
   const laves__instruction *end = tape->instructions + tape->count;
   for (const laves__instruction *p = tape->instructions; p < end; p++) {
     const double k = p->constant;

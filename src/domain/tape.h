@@ -54,5 +54,7 @@ laves__interval laves__tape_interval(const laves__tape *tape, laves__box3 box, b
 
 /* Value and gradient; where the function has a kink, those of one of its sides. */
 laves__dual laves__tape_gradient(const laves__tape *tape, laves__vec3 point);
+/* The same at many points, with the same bits, several times as fast. */
+void laves__tape_gradients(const laves__tape *tape, size_t count, const laves__vec3 *points, laves__dual *duals);
 
 #endif

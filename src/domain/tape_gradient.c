@@ -1,9 +1,12 @@
-/* Tapes at one point with gradient: forward differentiation, each register a value and three derivatives.
+/* Tapes with gradient, at one point or over batches: forward differentiation, each register a value and three derivatives.
  *
  * Values are those of the batch evaluation, bit for bit. Where a derivative does not exist (the tip of a norm, the root of
  * zero) it is zero, so a kink never spoils the gradient of what is joined to it. */
+#include <string.h>
+
 #include "domain/elementary.h"
 #include "domain/tape.h"
+#include "domain/wide.h"
 
 typedef laves__dual dual;
 
@@ -50,8 +53,9 @@ static dual leaf_value(const laves__oracle *leaf, dual a, dual b, dual c) {
   return with(phi, v3_mad(v3_mad(v3_scale(a.gradient, slope.x), b.gradient, slope.y), c.gradient, slope.z));
 }
 
-static inline dual apply(const laves__tape *tape, const laves__instruction *p, dual a, dual b, dual c) {
-  switch ((laves__op)p->op) {
+/* What one operation does, but LEAF. Inlined with a constant operation it is what the operation needs and no more. */
+static inline __attribute__((always_inline)) dual apply(laves__op op, dual a, dual b, dual c) {
+  switch (op) {
     case LAVES__OP_NEGATE:
       return chain(-a.value, -1, a);
     case LAVES__OP_ABS:
@@ -106,8 +110,6 @@ static inline dual apply(const laves__tape *tape, const laves__instruction *p, d
     }
     case LAVES__OP_NORM3:
       return norm3(a, b, c);
-    case LAVES__OP_LEAF:
-      return leaf_value(&tape->leaves[p->leaf], a, b, c);
     default:
       return with(NAN, v3(0, 0, 0));
   }
@@ -123,7 +125,8 @@ static dual run(const laves__tape *tape, laves__vec3 point, dual *registers) {
     const dual constant = with(p->constant, v3(0, 0, 0));
     const dual a = p->operand[0] == LAVES__OPERAND_CONSTANT ? constant : registers[p->operand[0]];
     const dual b = p->operand[1] == LAVES__OPERAND_CONSTANT ? constant : registers[p->operand[1]];
-    result = apply(tape, p, a, b, registers[p->operand[2]]);
+    const dual c = registers[p->operand[2]];
+    result = p->op == LAVES__OP_LEAF ? leaf_value(&tape->leaves[p->leaf], a, b, c) : apply((laves__op)p->op, a, b, c);
     registers[p->out] = result;
   }
   if (!v3_finite(result.gradient)) result.gradient = v3(0, 0, 0); /* an overflow on the way */
@@ -142,4 +145,96 @@ static dual run_small(const laves__tape *tape, laves__vec3 point) {
 
 laves__dual laves__tape_gradient(const laves__tape *tape, laves__vec3 point) {
   return tape->register_count <= LAVES__REGISTERS_FEW ? run_small(tape, point) : run_large(tape, point);
+}
+
+/* ---- batches ---- */
+
+/* Doubles in the register block of a run, and the most points at a time. */
+enum { SCRATCH = 4 * LAVES__REGISTER_LIMIT, BATCH = 64 };
+
+/* A register over a batch of n points: n values, then n derivatives by x, by y, by z. */
+static inline dual load(const double *reg, size_t n, size_t i) {
+  return (dual){reg[i], {reg[n + i], reg[2 * n + i], reg[3 * n + i]}};
+}
+
+static inline void store(dual d, double *reg, size_t n, size_t i) {
+  reg[i] = d.value;
+  reg[n + i] = d.gradient.x;
+  reg[2 * n + i] = d.gradient.y;
+  reg[3 * n + i] = d.gradient.z;
+}
+
+#define EACH(name)                                                                                                         \
+  case LAVES__OP_##name:                                                                                                   \
+    LAVES__EACH_ALONE                                                                                                      \
+    for (size_t i = 0; i < n; i++) store(apply(LAVES__OP_##name, load(a, n, i), load(b, n, i), load(c, n, i)), out, n, i); \
+    break
+
+/* The block holds register r at block + 4 r n; `constants` are two registers for constant operands. */
+LAVES__WIDE static void run_batch(const laves__tape *tape, size_t n, double *block, double *constants) {
+  const laves__instruction *end = tape->instructions + tape->count;
+  for (const laves__instruction *p = tape->instructions; p < end; p++) {
+    const double *operand[2];
+    for (int k = 0; k < 2; k++) {
+      double *constant = constants + 4 * n * (size_t)k;
+      const bool is_constant = p->operand[k] == LAVES__OPERAND_CONSTANT;
+      for (size_t i = 0; is_constant && i < n; i++) constant[i] = p->constant;
+      operand[k] = is_constant ? constant : block + 4 * n * p->operand[k];
+    }
+    const double *a = operand[0], *b = operand[1];
+    const double *c = p->operand[2] == LAVES__OPERAND_CONSTANT ? block : block + 4 * n * p->operand[2];
+    double *out = block + 4 * n * p->out;
+    switch ((laves__op)p->op) {
+      EACH(NEGATE);
+      EACH(ABS);
+      EACH(SQUARE);
+      EACH(SQRT);
+      EACH(SIN);
+      EACH(COS);
+      EACH(TAN);
+      EACH(ASIN);
+      EACH(ACOS);
+      EACH(EXP);
+      EACH(LOG);
+      EACH(FLOOR);
+      EACH(ADD);
+      EACH(SUB);
+      EACH(MUL);
+      EACH(DIV);
+      EACH(MIN);
+      EACH(MAX);
+      EACH(POW);
+      EACH(ATAN2);
+      EACH(MOD);
+      EACH(NORM2);
+      EACH(NORM3);
+      case LAVES__OP_LEAF:
+        for (size_t i = 0; i < n; i++)
+          store(leaf_value(&tape->leaves[p->leaf], load(a, n, i), load(b, n, i), load(c, n, i)), out, n, i);
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+void laves__tape_gradients(const laves__tape *tape, size_t count, const laves__vec3 *points, laves__dual *duals) {
+  _Alignas(64) double block[SCRATCH];
+  _Alignas(64) double constants[2 * 4 * BATCH] = {0};
+  const size_t fits = SCRATCH / (4 * (size_t)tape->register_count), batch = fits < BATCH ? fits : BATCH;
+  const size_t last = tape->instructions[tape->count - 1].out;
+  for (size_t begin = 0; begin < count; begin += batch) {
+    const size_t n = count - begin < batch ? count - begin : batch;
+    if (n < batch) memset(constants, 0, sizeof constants); /* rows of derivatives lie elsewhere now */
+    for (size_t i = 0; i < n; i++) {
+      store(with(points[begin + i].x, v3(1, 0, 0)), block, n, i);
+      store(with(points[begin + i].y, v3(0, 1, 0)), block + 4 * n, n, i);
+      store(with(points[begin + i].z, v3(0, 0, 1)), block + 8 * n, n, i);
+    }
+    run_batch(tape, n, block, constants);
+    for (size_t i = 0; i < n; i++) {
+      duals[begin + i] = load(block + 4 * n * last, n, i);
+      if (!v3_finite(duals[begin + i].gradient)) duals[begin + i].gradient = v3(0, 0, 0);
+    }
+  }
 }

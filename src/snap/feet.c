@@ -57,17 +57,33 @@ static bool nearest_crossing(const laves__frame *frame, const laves__lattice *la
   return true;
 }
 
-bool laves__site_foot(const laves__frame *frame, const laves__lattice *lattice, int32_t record, int site, laves__foot *foot) {
-  const laves__record *r = &lattice->record[record];
-  const laves__vec3 p = laves__site_position(r->xyz, site);
-  laves__vec3 normal;
-  foot->hint = r->hint[site];
-  if (laves__frame_project(frame, p, foot_reach, &foot->hint, &foot->position, &normal) &&
-      v3_distance(p, foot->position) <= foot_reach) {
-    set_normal(foot, normal);
-    return true;
+/* The feet of some sites of a record: the nearest points of the surface or, where one can't be found, the nearest crossing of
+ * the site's own edges. */
+static void find_record_feet(const laves__frame *frame, const laves__lattice *lattice, const laves__record *r, uint32_t sites,
+                             laves__foot *feet) {
+  laves__vec3 at[LAVES__C15_SITES] = {{0, 0, 0}};
+  laves__projection answer[LAVES__C15_SITES];
+  size_t count = 0;
+  for (uint32_t mask = sites; mask; mask &= mask - 1) {
+    const int site = __builtin_ctz(mask);
+    at[count] = laves__site_position(r->xyz, site);
+    answer[count++].hint = r->hint[site];
   }
-  return nearest_crossing(frame, lattice, r, site, foot);
+  laves__frame_project_many(frame, count, at, foot_reach, answer);
+  count = 0;
+  for (uint32_t mask = sites; mask; mask &= mask - 1, count++) {
+    const int site = __builtin_ctz(mask);
+    const laves__projection *a = &answer[count];
+    laves__foot *foot = &feet[site];
+    if (a->found && v3_distance(at[count], a->foot) <= foot_reach) {
+      foot->position = a->foot;
+      foot->hint = a->hint;
+      set_normal(foot, a->normal);
+      foot->state = LAVES__FOOT_FOUND;
+    } else {
+      foot->state = nearest_crossing(frame, lattice, r, site, foot) ? LAVES__FOOT_FOUND : LAVES__FOOT_NONE;
+    }
+  }
 }
 
 bool laves__lies_inside(const laves__frame *frame, laves__vec3 point, double depth) {
@@ -90,13 +106,12 @@ typedef struct search {
 static void find_feet(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const search *s = user;
-  for (size_t i = begin; i < end; i++)
-    for (uint32_t mask = s->wanted[i]; mask; mask &= mask - 1) {
-      const int site = __builtin_ctz(mask);
-      laves__foot *foot = laves__feet_at(s->feet, i, site);
-      if (foot->state != LAVES__FOOT_UNKNOWN) continue;
-      foot->state = laves__site_foot(s->frame, s->lattice, (int32_t)i, site, foot) ? LAVES__FOOT_FOUND : LAVES__FOOT_NONE;
-    }
+  for (size_t i = begin; i < end; i++) {
+    uint32_t unknown = 0;
+    for (uint32_t mask = s->wanted[i]; mask; mask &= mask - 1)
+      if (laves__feet_at(s->feet, i, __builtin_ctz(mask))->state == LAVES__FOOT_UNKNOWN) unknown |= mask & -mask;
+    if (unknown) find_record_feet(s->frame, s->lattice, &s->lattice->record[i], unknown, s->feet->block[s->feet->block_of[i]]);
+  }
 }
 
 bool laves__feet_make(const laves__lattice *lattice, const uint32_t *wanted, laves__feet *feet) {

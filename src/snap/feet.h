@@ -37,10 +37,6 @@ static inline laves__foot *laves__feet_at(const laves__feet *feet, size_t record
 const laves__foot *laves__feet_get(const laves__feet *feet, int32_t record, int site);
 void laves__feet_free(laves__feet *feet);
 
-/* The search for one foot: the nearest point of the surface or, where that can't be found, the nearest crossing of the
- * site's own edges. False when neither exists. */
-bool laves__site_foot(const laves__frame *frame, const laves__lattice *lattice, int32_t record, int site, laves__foot *foot);
-
 /* Whether a point lies inside, at least `depth` sizes from the surface. */
 bool laves__lies_inside(const laves__frame *frame, laves__vec3 point, double depth);
 

@@ -122,6 +122,27 @@ static void gradients_equal_differences(void **state) {
   assert_true(compared > TREES * 20);
 }
 
+/* Gradients of batches have the bits of single ones, whatever the size of the batch. */
+static void gradients_of_batches_are_the_same(void **state) {
+  (void)state;
+  for (uint64_t seed = 1; seed <= TREES; seed++) {
+    random_tape r = make(seed, SIZE, false);
+    uint64_t point_seed = seed;
+    laves__vec3 points[POINTS];
+    laves__dual duals[POINTS];
+    for (int k = 0; k < POINTS; k++) points[k] = random_point(&point_seed, 2);
+    for (size_t count = 1; count <= POINTS; count += 1 + count / 2) {
+      laves__tape_gradients(&r.tape, count, points, duals);
+      for (size_t k = 0; k < count; k++) {
+        const laves__dual one = laves__tape_gradient(&r.tape, points[k]);
+        assert_true(one.value == duals[k].value || (isnan(one.value) && isnan(duals[k].value)));
+        assert_true(v3_distance(one.gradient, duals[k].gradient) == 0);
+      }
+    }
+    drop(&r);
+  }
+}
+
 /* The functions whose slopes have no bound, away from where that shows. */
 static void steep_functions_have_gradients(void **state) {
   (void)state;
@@ -210,10 +231,10 @@ static void many_registers_shrink_the_batch(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(batches_equal_recursion),         cmocka_unit_test(intervals_contain_samples),
-      cmocka_unit_test(gradients_equal_differences),     cmocka_unit_test(steep_functions_have_gradients),
-      cmocka_unit_test(endless_boxes_have_ranges),       cmocka_unit_test(trivial_expressions_have_tapes),
-      cmocka_unit_test(many_registers_shrink_the_batch),
+      cmocka_unit_test(batches_equal_recursion),           cmocka_unit_test(intervals_contain_samples),
+      cmocka_unit_test(gradients_equal_differences),       cmocka_unit_test(steep_functions_have_gradients),
+      cmocka_unit_test(gradients_of_batches_are_the_same), cmocka_unit_test(endless_boxes_have_ranges),
+      cmocka_unit_test(trivial_expressions_have_tapes),    cmocka_unit_test(many_registers_shrink_the_batch),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
