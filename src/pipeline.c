@@ -119,20 +119,35 @@ static laves_result stuff_everything(run *r) {
   return stuff(r);
 }
 
-static bool is_empty(const run *r) {
-  int64_t vertices, tets;
-  laves__assemble_estimate(&r->lattice, &r->layer, &vertices, &tets);
-  return tets == 0;
+/* Shares of the solid's volume: below the first, snapping is not the way; below the second, no mesh is of use. */
+static const double least_snapped = 0.5, least_filled = 0.25;
+
+/* Volume of the mesh as it is now, over that of the solid. */
+static double filled_share(const run *r) {
+  static const double tile = LAVES__CELL_SIDE * LAVES__CELL_SIDE * LAVES__CELL_SIDE / LAVES__C15_TETS; /* mean volume */
+  int64_t vertices, tiles;
+  double layer = 0;
+  laves__assemble_estimate(&r->lattice, &r->layer, &vertices, &tiles);
+  for (size_t t = 0; t < r->layer.tet_count; t++) {
+    if (r->layer.tet[t][0] < 0) continue;
+    laves__vec3 p[4];
+    laves__layer_points(&r->layer, (int32_t)t, p);
+    layer += v3_det(p[0], p[1], p[2], p[3]) / 6;
+    tiles--;
+  }
+  const double size = r->frame.size;
+  return ((double)tiles * tile + layer) * size * size * size / r->report->volume;
 }
 
 /* Whether stuffing may take the place of snapping. */
 static bool may_mend(const run *r) { return r->guarantee && r->options->method == LAVES_METHOD_AUTO; }
 
-/* The boundary in the way that was asked for. Where snapping finds a solid too thin for any tet, stuffing may find some. */
+/* The boundary in the way that was asked for. Snapping needs walls of a size or so; where it loses too much of a thinner solid,
+ * stuffing, which keeps every inner site, takes its place. */
 static laves_result conform(run *r) {
   if (r->options->method == LAVES_METHOD_STUFF) return stuff_everything(r);
   const laves_result result = snap(r);
-  return result == LAVES_OK && may_mend(r) && is_empty(r) ? stuff_everything(r) : result;
+  return result == LAVES_OK && may_mend(r) && filled_share(r) < least_snapped ? stuff_everything(r) : result;
 }
 
 static laves_result nothing_resolved(const run *r) {
@@ -140,6 +155,12 @@ static laves_result nothing_resolved(const run *r) {
       r->error, LAVES_ERROR_INPUT,
       "nothing of the solid is resolved at size %g (the box around it has a diagonal of %g); choose a smaller size",
       r->frame.size, box3_diagonal(r->domain->oracle.bounds));
+}
+
+static laves_result hardly_resolved(const run *r, double share) {
+  return laves__fail(r->error, LAVES_ERROR_INPUT,
+                     "only %.2g %% of the solid's volume is resolved at size %g, as it is so thin; choose a smaller size",
+                     100 * share, r->frame.size);
 }
 
 /* Background to boundary; repeated with a corrected size when a count was asked for and missed. */
@@ -154,9 +175,11 @@ static laves_result make_boundary(run *r) {
     laves__assemble_estimate(&r->lattice, &r->layer, &vertices, &tets);
     const double factor = laves__options_correction(r->options, tets, vertices);
     if (tets == 0) return nothing_resolved(r);
-    if (factor == 1 || correction == CORRECTIONS) return LAVES_OK;
+    if (factor == 1 || correction == CORRECTIONS) break;
     r->frame.size *= factor;
   }
+  const double share = filled_share(r);
+  return share < least_filled ? hardly_resolved(r, share) : LAVES_OK;
 }
 
 /* Angles that are held while improving are this much, in degrees, inside the promised ones: rounding must not matter. */
@@ -213,7 +236,7 @@ static laves_result improve_and_keep_promise(run *r) {
   laves_result result = LAVES_OK;
   if (may_mend(r) && is_rough(r)) result = stuff_everything(r);
   if (result == LAVES_OK) result = improve(r);
-  if (result == LAVES_OK && may_mend(r) && is_empty(r)) { /* flat tets only, all peeled off */
+  if (result == LAVES_OK && may_mend(r) && filled_share(r) == 0) { /* flat tets only, all peeled off */
     result = stuff_everything(r);
     if (result == LAVES_OK) result = improve(r);
   }

@@ -50,6 +50,7 @@ static laves_result stuff_once(laves__stuffing *s, laves__parted *parted, bool *
   reset_labels(s->lattice);
   laves_result result = laves__find_crossings(s, error);
   if (result == LAVES_OK) result = laves__warp(s, error);
+  if (result == LAVES_OK) result = laves__keep_inner(s, &counts->unsnapped, error);
   if (result == LAVES_OK) result = laves__unpinch(s, parted, &counts->unsnapped, grown, error);
   return result;
 }

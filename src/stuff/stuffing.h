@@ -49,6 +49,8 @@ laves__crossings *laves__crossing_at(const laves__stuffing *s, laves__site site,
 
 /* Snaps the sites of the zone (record.zone) that are violated: label ON. */
 laves_result laves__warp(laves__stuffing *s, laves_error *error);
+/* Takes snaps of inner sites back where nothing would be kept around them; *unsnapped counts them. */
+laves_result laves__keep_inner(laves__stuffing *s, size_t *unsnapped, laves_error *error);
 /* Takes snaps back until the boundary is a manifold; *unsnapped counts them. Sites outside the zone that pinch are listed in
  * `parted` where cuts are far; where they are near, they join the zone with their neighbours, and *grown is set: everything
  * must be done again then. */

@@ -12,12 +12,16 @@
  *                       O-------O  O---\---S             both triangles an I; dropped ones when it has an O, or two S
  *                                                        and neither triangle an I
  *
- * A site that pinches is *unsnapped*: it goes back to its place and its violating crossings are moved to just where they no
- * longer violate it. That is a configuration like any other, so what is proved for all of them holds; and a site is
+ * Tets without an inner corner are dropped, so inner sites that all snap take a thin or ragged part away with them. Where
+ * nothing would be kept around a snapped inner site, it comes back, the deepest first.
+ *
+ * A site that pinches, or comes back, is *unsnapped*: it goes back to its place and its violating crossings are moved to just
+ * where they no longer violate it. That is a configuration like any other, so what is proved for all of them holds; and a site is
  * unsnapped at most once, so this ends. */
-#include "stuff/stuffing.h"
-
+#include <stdlib.h>
 #include <string.h>
+
+#include "stuff/stuffing.h"
 
 static double alpha(const laves__stuffing *s, int outer, int site, int other) {
   return s->guarantee->thresholds->alpha[outer][laves__kind_of(site)][laves__kind_of(other)];
@@ -142,6 +146,54 @@ static void unsnap(laves__stuffing *s, laves__site site) {
     c->fraction[slot] = outer ? 1 - least : least;
   }
 }
+
+/* ---- sites that would vanish ---- */
+
+/* A snapped inner site around which nothing is kept, and how deep it lies: the square of its way to the surface. */
+typedef struct lone_site {
+  double depth;
+  uint32_t id;
+} lone_site;
+
+static int by_depth(const void *left, const void *right) {
+  const lone_site *a = left, *b = right;
+  if (a->depth != b->depth) return a->depth > b->depth ? -1 : 1;
+  return a->id < b->id ? -1 : a->id > b->id;
+}
+
+static bool is_lone(const laves__stuffing *s, laves__site site) {
+  const laves__record *r = &s->lattice->record[site.cell];
+  if (s->snapped[laves__site_id(site)].along == UINT8_MAX || r->sign[site.site] > 0) return false;
+  link_parts parts;
+  part_link(s, site, &parts);
+  return parts.kept == 0;
+}
+
+laves_result laves__keep_inner(laves__stuffing *s, size_t *unsnapped, laves_error *error) {
+  laves_context *context = s->lattice->context;
+  lone_site *list = NULL;
+  size_t capacity = 0, count = 0;
+  for (size_t id = 0; id < s->site_count; id++) {
+    const laves__site site = laves__site_of((uint32_t)id);
+    if (!is_lone(s, site)) continue;
+    if (!laves__grow(context, &list, &capacity, count + 1, sizeof *list)) {
+      laves__free(context, list, capacity, sizeof *list);
+      return laves__fail_memory(context, error);
+    }
+    const laves__snapped *snapped = &s->snapped[id];
+    list[count++] = (lone_site){snapped->share * snapped->share * s->links.length2[site.site][snapped->along], (uint32_t)id};
+  }
+  if (count) qsort(list, count, sizeof *list, by_depth);
+  for (size_t i = 0; i < count; i++) {
+    if (!is_lone(s, laves__site_of(list[i].id))) continue; /* one beside it was kept */
+    unsnap(s, laves__site_of(list[i].id));
+    ++*unsnapped;
+  }
+  laves__free(context, list, capacity, sizeof *list);
+  return LAVES_OK;
+}
+
+/* ---- the search for pinches ---- */
 
 /* Puts the ON neighbours of a site on the list of sites to look at. */
 static bool push_neighbours(const laves__stuffing *s, laves__site site, uint32_t **list, size_t *capacity, size_t *count) {
