@@ -78,7 +78,8 @@ const option option_rows[] = {
      "how the boundary is made: snap (no tetrahedron is cut), stuff (warped and cut, with proved angles), or auto: snapped, and "
      "stuffed where snapping leaves the guaranteed window"},
     {"guarantee", 0, MESH, IN_SHAPE, OPTION_REAL, "DEG", "degrees", false, 0, 28, "14.4", MEMBER(guarantee), 0,
-     "smallest dihedral angle promised whatever the shape (docs/proof.md): 14.4 keeps every boundary vertex on the surface; 20, "
+     "smallest dihedral angle promised whatever the shape (docs/proof.md): 14.4 keeps boundary vertices on the surface, but "
+     "where it would touch itself; 20, "
      "22.5, 24 and 28 may move some off it, where the surface is rougher than the size; between these the next higher; 0: no "
      "promise, as with --method snap"},
     {"no-improve", 0, MESH, IN_SHAPE, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(no_improve), 0,

@@ -8,7 +8,7 @@
 /* Checks the options: LAVES_ERROR_OPTION with a sentence that names the option and its range. */
 laves_result laves__options_check(const laves_options *options, laves_error *error);
 
-/* The window that is promised; NULL: none. */
+/* The guarantee whose rule stuffing follows, which is promised unless 0 was asked for; NULL: nothing is stuffed. */
 const laves__guarantee *laves__options_guarantee(const laves_options *options);
 
 /* The rotation of the lattice that the options ask for. */

@@ -270,8 +270,9 @@ static laves_result judge(run *r, const laves_mesh *mesh) {
   report->lattice_tets = mesh->lattice_tet_count;
   report->snapped_vertices = r->counts.snapped;
   report->pinches = r->counts.pinches + r->stuffed.unsnapped;
-  report->promised_min_dihedral = r->guarantee ? r->guarantee->min_dihedral : 0;
-  report->promised_max_dihedral = r->guarantee ? r->guarantee->max_dihedral : 180;
+  const bool promised = r->guarantee && o->guarantee > 0; /* stuffing needs thresholds, promised or not */
+  report->promised_min_dihedral = promised ? r->guarantee->min_dihedral : 0;
+  report->promised_max_dihedral = promised ? r->guarantee->max_dihedral : 180;
   report->stuffed_vertices = r->stuffed.vertices;
   report->relaxed_vertices = r->stuffed.relaxed;
   report->relaxed_max = r->stuffed.relaxed_max * r->frame.size;
