@@ -29,6 +29,7 @@ typedef struct run {
   laves__snap_counts counts;
   laves__stuff_counts stuffed;
   const laves__guarantee *guarantee; /* NULL: nothing is promised */
+  bool rough;                        /* the solid is rougher than the size */
   double wall, cpu;                  /* at the start of the stage under way */
 } run;
 
@@ -201,7 +202,8 @@ static laves_result improve(run *r) {
                              .max_dihedral = fmin(r->options->max_dihedral - 3, 179),
                              .volume_length = r->options->volume_length > 0 ? r->options->volume_length + 0.05 : 0,
                              .held_min = held ? r->guarantee->min_dihedral + held_slack : 0,
-                             .held_max = held ? r->guarantee->max_dihedral - held_slack : 180};
+                             .held_max = held ? r->guarantee->max_dihedral - held_slack : 180,
+                             .brief = r->rough};
   const laves_result result = laves__improve(&r->frame, &aim, &r->layer, r->error);
   end_stage(r, "improve");
   return result;
@@ -234,7 +236,8 @@ static laves_result mend_promise(run *r) {
 /* The layer improved, and inside the promised window. */
 static laves_result improve_and_keep_promise(run *r) {
   laves_result result = LAVES_OK;
-  if (may_mend(r) && is_rough(r)) result = stuff_everything(r);
+  r->rough = may_mend(r) && is_rough(r);
+  if (r->rough) result = stuff_everything(r);
   if (result == LAVES_OK) result = improve(r);
   if (result == LAVES_OK && may_mend(r) && filled_share(r) == 0) { /* flat tets only, all peeled off */
     result = stuff_everything(r);

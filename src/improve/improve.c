@@ -22,7 +22,9 @@ static const size_t crowd_min = 2000; /* tets; fewer never are a crowd */
 /* Where even more than this share is bad after one pass, the solid is noise at this size: smoothing goes on for one more pass
  * only, and only tets far outside get a contraction. */
 static const double rough_share = 0.2;
-static const double rough_admit = 0.4;      /* quality: about 26 degrees */
+static const double rough_admit = 0.4; /* quality: about 26 degrees */
+/* Where that is known beforehand, smoothing leaves those alone, too, that are better than this. */
+static const double brief_admit = 0.6;      /* about 32 degrees */
 static const double block_side = 15;        /* sizes; see above */
 static const double worthwhile = 0.02;      /* share of bad tets that a pass must cure to be followed by its like */
 static const double thorough_below = 0.985; /* quality below which the few that remain get more patience */
@@ -235,8 +237,9 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
   if (!laves__parallel_for(context, NULL, layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
   if (result == LAVES_OK) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
+  if (window->brief) w.admit = brief_admit;
   if (result == LAVES_OK) result = run_passes(&w, 1, 1, error);
-  const bool rough = is_crowded(&w, rough_share);
+  const bool rough = window->brief || is_crowded(&w, rough_share);
   if (result == LAVES_OK) result = run_passes(&w, rough ? 1 : SMOOTH_PASSES - 1, 1, error);
   if (result == LAVES_OK) settle_all(&w);
   const bool crowded = is_crowded(&w, crowd);
@@ -250,7 +253,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
     w.given_up[t] = HUGE_VAL;
     w.tries[t] = 0;
   }
-  if (result == LAVES_OK && !crowded) result = run_passes(&w, CONTRACT_PASSES, 2, error);
+  if (result == LAVES_OK && !crowded && !rough) result = run_passes(&w, CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) peel_all(&w);
   if (result == LAVES_OK) settle_all(&w);
 cleanup:

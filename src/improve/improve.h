@@ -20,6 +20,7 @@ typedef struct laves__window {
   double min_dihedral, max_dihedral; /* degrees */
   double volume_length;              /* 0: not asked */
   double held_min, held_max;         /* all tets are inside these angles and stay so; 0 and 180: nothing is held */
+  bool brief;                        /* the solid is rougher than the size: few passes, and only the worst get more */
 } laves__window;
 
 /* Improves the layer until every tet is inside the window, or no operation helps.
