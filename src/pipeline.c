@@ -120,8 +120,9 @@ static laves_result stuff_everything(run *r) {
   return stuff(r);
 }
 
-/* Shares of the solid's volume: below the first, snapping is not the way; below the second, no mesh is of use. */
-static const double least_snapped = 0.5, least_filled = 0.25;
+/* Shares of the solid's volume: below the first, snapping is not the way; beyond the others, no mesh is of use. (A site that
+ * alone stands for a small part makes a piece as large as an edge.) */
+static const double least_snapped = 0.5, least_filled = 0.25, most_filled = 2;
 
 /* Volume of the mesh as it is now, over that of the solid. */
 static double filled_share(const run *r) {
@@ -160,8 +161,9 @@ static laves_result nothing_resolved(const run *r) {
 
 static laves_result hardly_resolved(const run *r, double share) {
   return laves__fail(r->error, LAVES_ERROR_INPUT,
-                     "only %.2g %% of the solid's volume is resolved at size %g, as it is so thin; choose a smaller size",
-                     100 * share, r->frame.size);
+                     "a mesh of size %g would have %.2g times the volume of the solid, which is so thin or small; choose a "
+                     "smaller size",
+                     r->frame.size, share);
 }
 
 /* Background to boundary; repeated with a corrected size when a count was asked for and missed. */
@@ -180,7 +182,7 @@ static laves_result make_boundary(run *r) {
     r->frame.size *= factor;
   }
   const double share = filled_share(r);
-  return share < least_filled ? hardly_resolved(r, share) : LAVES_OK;
+  return share < least_filled || share > most_filled ? hardly_resolved(r, share) : LAVES_OK;
 }
 
 /* Angles that are held while improving are this much, in degrees, inside the promised ones: rounding must not matter. */

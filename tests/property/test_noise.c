@@ -36,7 +36,7 @@ static bool mesh_noise(laves_context *context, int seed) {
   snprintf(name, sizeof name, "noise %d, kind %d", seed, (int)n.kind);
   assert_int_equal(laves_domain_from_function(context, &function, &domain, NULL), LAVES_OK);
   const laves_result result = laves_generate(context, domain, &options, &mesh, &report, &error);
-  if (result == LAVES_ERROR_INPUT && strstr(error.text, "resolved at size")) {
+  if (result == LAVES_ERROR_INPUT && (strstr(error.text, "resolved at size") || strstr(error.text, "times the volume"))) {
     laves_domain_free(domain);
     return false;
   }
@@ -64,27 +64,28 @@ static void every_mesh_is_inside_the_window(void **state) {
   laves_context_free(context);
 }
 
-static laves_report report_of_noise(laves_context *context, laves_method method) {
-  noise n = {.kind = NOISE_FRACTAL, .seed = 5, .scale = 3};
+/* Not improved; fails when there is none. Free with laves_mesh_free(). */
+static laves_mesh *mesh_of_noise(laves_context *context, noise n, laves_method method, laves_report *report) {
   const laves_function function = noise_function(&n);
   laves_options options = options_of_size(0.2);
   options.method = method;
   options.improve = false;
   laves_domain *domain;
   laves_mesh *mesh;
-  laves_report report;
   assert_int_equal(laves_domain_from_function(context, &function, &domain, NULL), LAVES_OK);
-  assert_int_equal(laves_generate(context, domain, &options, &mesh, &report, NULL), LAVES_OK);
-  laves_mesh_free(mesh);
+  assert_int_equal(laves_generate(context, domain, &options, &mesh, report, NULL), LAVES_OK);
   laves_domain_free(domain);
-  return report;
+  return mesh;
 }
 
 /* Where everything is made again by stuffing, the report does not tell of what snapping had made. */
 static void reports_tell_of_the_last_boundary(void **state) {
   (void)state;
   laves_context *context = laves_context_create(NULL);
-  const laves_report chosen = report_of_noise(context, LAVES_METHOD_AUTO), asked = report_of_noise(context, LAVES_METHOD_STUFF);
+  const noise n = {.kind = NOISE_FRACTAL, .seed = 5, .scale = 3};
+  laves_report chosen, asked;
+  laves_mesh_free(mesh_of_noise(context, n, LAVES_METHOD_AUTO, &chosen));
+  laves_mesh_free(mesh_of_noise(context, n, LAVES_METHOD_STUFF, &asked));
   assert_true(asked.stuffed_vertices > 0);
   assert_int_equal(chosen.stuffed_vertices, asked.stuffed_vertices);
   assert_int_equal(chosen.snapped_vertices, 0);
@@ -97,20 +98,12 @@ static void reports_tell_of_the_last_boundary(void **state) {
 static void noise_keeps_its_volume(void **state) {
   (void)state;
   laves_context *context = laves_context_create(NULL);
-  noise n = {NOISE_WHITE, 5, 1};
-  const laves_function function = noise_function(&n);
-  laves_options options = options_of_size(0.2);
-  options.method = LAVES_METHOD_STUFF;
-  options.improve = false;
-  laves_domain *domain;
-  laves_mesh *mesh;
+  const noise n = {.kind = NOISE_WHITE, .seed = 5, .scale = 1};
   laves_report report;
-  assert_int_equal(laves_domain_from_function(context, &function, &domain, NULL), LAVES_OK);
-  assert_int_equal(laves_generate(context, domain, &options, &mesh, &report, NULL), LAVES_OK);
+  laves_mesh *mesh = mesh_of_noise(context, n, LAVES_METHOD_STUFF, &report);
   const laves_check check = check_valid(context, mesh, "white noise");
   assert_true(check.volume > 0.6 * report.volume);
   laves_mesh_free(mesh);
-  laves_domain_free(domain);
   laves_context_free(context);
 }
 

@@ -204,12 +204,33 @@ static void limited_memory_is_told(void **state) {
   }
 }
 
+/* A lone site would stand for the whole solid with a piece as large as an edge. */
+static void lumps_are_refused(void **state) {
+  (void)state;
+  laves_context *context = laves_context_create(NULL);
+  const laves_options options = options_of_size(9);
+  laves_domain *domain;
+  laves_mesh *mesh;
+  laves_error error;
+  assert_int_equal(laves_domain_from_expression(context, "sphere(1)", &domain, &error), LAVES_OK);
+  assert_int_equal(laves_generate(context, domain, &options, &mesh, NULL, &error), LAVES_ERROR_INPUT);
+  assert_null(mesh);
+  assert_non_null(strstr(error.text, "choose a smaller size"));
+  laves_domain_free(domain);
+  laves_context_free(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(crossings_lie_on_the_surface), cmocka_unit_test(stuffed_vertices_lie_on_the_surface),
-      cmocka_unit_test(relaxation_is_told),           cmocka_unit_test(zones_join),
-      cmocka_unit_test(zones_take_components),        cmocka_unit_test(broken_promises_are_mended),
-      cmocka_unit_test(threads_change_nothing),       cmocka_unit_test(limited_memory_is_told),
+      cmocka_unit_test(crossings_lie_on_the_surface),
+      cmocka_unit_test(stuffed_vertices_lie_on_the_surface),
+      cmocka_unit_test(relaxation_is_told),
+      cmocka_unit_test(zones_join),
+      cmocka_unit_test(zones_take_components),
+      cmocka_unit_test(broken_promises_are_mended),
+      cmocka_unit_test(threads_change_nothing),
+      cmocka_unit_test(limited_memory_is_told),
+      cmocka_unit_test(lumps_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
