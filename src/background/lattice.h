@@ -11,6 +11,7 @@
 #define LAVES_BACKGROUND_LATTICE_H
 
 #include "background/c15_table.h"
+#include "background/graph.h"
 #include "domain/frame.h"
 
 #define LAVES__CELL_SIDE (LAVES__C15_PERIOD / LAVES__C15_MEAN_EDGE)
@@ -58,6 +59,7 @@ typedef struct laves__lattice {
   size_t brick_count, brick_capacity;
   laves__record *record;
   size_t record_count, record_capacity;
+  laves__graph *graph; /* a graded background in the place of the tiling, which has no bricks then; NULL: the tiling */
 } laves__lattice;
 
 /* A site, wherever it lies: `cell` as in laves__brick.cell. */

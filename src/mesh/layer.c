@@ -67,6 +67,7 @@ void laves__layer_free(laves__layer *layer) {
   laves__free(context, layer->hint, vertices, sizeof *layer->hint);
   laves__free(context, layer->depth, vertices, sizeof *layer->depth);
   laves__free(context, layer->off_surface, vertices, sizeof *layer->off_surface);
+  laves__free(context, layer->scale, layer->scale ? vertices : 0, sizeof *layer->scale);
   laves__free(context, layer->origin, vertices, sizeof *layer->origin);
   laves__free(context, layer->star, vertices, sizeof *layer->star);
   laves__free(context, layer->tet, tets, sizeof *layer->tet);

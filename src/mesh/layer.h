@@ -31,6 +31,7 @@ typedef struct laves__layer {
   uint32_t *hint;      /* for the oracle; for depth 0 */
   uint8_t *depth;      /* 0: on the surface */
   bool *off_surface;   /* depth 0, but not on the surface: it could not be reached with positive tets */
+  float *scale;        /* the local size, in sizes, on a graded background; NULL: 1 everywhere */
   uint32_t *origin;    /* record * 24 + site, or LAVES__NO_ORIGIN for the further copies of a parted vertex */
   laves__star *star;   /* of depth 0 .. LAVES__DEPTH_MOVES; NULL tet: dead vertex */
   size_t tet_count;
@@ -56,6 +57,10 @@ static inline void laves__layer_points(const laves__layer *layer, int32_t tet, l
 static inline int laves__layer_corner(const laves__layer *layer, int32_t tet, int32_t vertex) {
   const int32_t *t = layer->tet[tet];
   return t[0] == vertex ? 0 : t[1] == vertex ? 1 : t[2] == vertex ? 2 : t[3] == vertex ? 3 : -1;
+}
+/* The local size at a vertex, in sizes. */
+static inline double laves__layer_scale(const laves__layer *layer, int32_t vertex) {
+  return layer->scale ? (double)layer->scale[vertex] : 1;
 }
 static inline bool laves__layer_moves(const laves__layer *layer, int32_t vertex) {
   return layer->depth[vertex] <= LAVES__DEPTH_MOVES;
