@@ -37,6 +37,13 @@ bool laves__mesh_input_add_face(laves__mesh_input *input, const int32_t corners[
   return true;
 }
 
+bool laves__mesh_input_add_value(laves__mesh_input *input, double value) {
+  laves__mesh_values *values = &input->values;
+  if (!laves__grow(input->context, &values->items, &values->capacity, values->count + 1, sizeof *values->items)) return false;
+  values->items[values->count++] = value;
+  return true;
+}
+
 bool laves__mesh_input_add_group(laves__mesh_input *input, int dimension, int32_t tag, const char *name, size_t length) {
   if (input->group_count == GROUPS_MAX) return true;
   if (!laves__grow(input->context, &input->groups, &input->group_capacity, input->group_count + 1, sizeof *input->groups))
@@ -46,6 +53,14 @@ bool laves__mesh_input_add_group(laves__mesh_input *input, int dimension, int32_
   group->tag = tag;
   snprintf(group->name, sizeof group->name, "%.*s", (int)(length < sizeof group->name ? length : sizeof group->name), name);
   return true;
+}
+
+bool laves__mesh_input_mentions(const laves__mesh_input *input, const char *text) {
+  enum { LOOK = 4096 };
+  const size_t available = (size_t)(input->end - input->begin), length = strlen(text);
+  for (size_t i = 0; i < LOOK && i + length <= available; i++)
+    if (memcmp(input->begin + i, text, length) == 0) return true;
+  return false;
 }
 
 bool laves__mesh_input_cancelled(const laves__mesh_input *input, const char *at) {
@@ -62,6 +77,49 @@ laves_result laves__mesh_input_fail(const laves__mesh_input *input, laves_error 
   return laves__fail(error, LAVES_ERROR_INPUT, "%s: %s", input->name, sentence);
 }
 
+/* ---- choosing an array ---- */
+
+static bool same_name(laves__word a, laves__word b) { return a.length == b.length && memcmp(a.at, b.at, a.length) == 0; }
+
+/* The first with this name; count: none. */
+static size_t find_name(const laves__word *names, size_t count, laves__word name) {
+  size_t i = 0;
+  while (i < count && !same_name(names[i], name)) i++;
+  return i;
+}
+
+/* "'a', 'b', 'c'", each name once, cut when long. */
+static void list_names(const laves__word *names, size_t count, char *text, size_t size) {
+  enum { LISTED_MAX = 8, LOOKED_AT_MAX = 1000 }; /* looking is quadratic */
+  size_t used = 0, listed = 0;
+  count = count < LOOKED_AT_MAX ? count : LOOKED_AT_MAX;
+  text[0] = 0;
+  for (size_t i = 0; i < count && listed <= LISTED_MAX && used < size; i++) {
+    if (find_name(names, i, names[i]) < i) continue;
+    char quote[LAVES__QUOTE_SIZE];
+    if (listed++ < LISTED_MAX)
+      used += (size_t)snprintf(text + used, size - used, "%s'%s'", used ? ", " : "", laves__quote(names[i], quote));
+    else
+      snprintf(text + used, size - used, ", ...");
+  }
+}
+
+laves_result laves__mesh_input_choose_array(const laves__mesh_input *input, const laves__word *names, size_t count,
+                                            size_t *chosen, laves_error *error) {
+  const char *wanted = input->values.array;
+  if (count == 0) return laves__mesh_input_fail(input, error, "there is no array in it with one number for each point or tet");
+  bool only = wanted == NULL;
+  for (size_t i = 1; i < count && only; i++) only = same_name(names[i], names[0]);
+  const char *name = wanted ? wanted : "size";
+  *chosen = only ? 0 : find_name(names, count, (laves__word){name, strlen(name)});
+  if (*chosen < count) return LAVES_OK;
+  char list[220], quote[LAVES__QUOTE_SIZE];
+  list_names(names, count, list, sizeof list);
+  if (!wanted) return laves__mesh_input_fail(input, error, "it has several arrays; name one of %s", list);
+  return laves__mesh_input_fail(input, error, "it has no array '%s'; its arrays are %s",
+                                laves__quote((laves__word){wanted, strlen(wanted)}, quote), list);
+}
+
 void laves__mesh_input_free(laves__mesh_input *input) {
   laves_context *context = input->context;
   laves__free(context, input->points, input->point_capacity, sizeof *input->points);
@@ -69,6 +127,7 @@ void laves__mesh_input_free(laves__mesh_input *input) {
   laves__free(context, input->regions, input->region_capacity, sizeof *input->regions);
   laves__free(context, input->faces, input->face_capacity, sizeof *input->faces);
   laves__free(context, input->face_tags, input->face_tag_capacity, sizeof *input->face_tags);
+  laves__free(context, input->values.items, input->values.capacity, sizeof *input->values.items);
   laves__free(context, input->groups, input->group_capacity, sizeof *input->groups);
   memset(input, 0, sizeof *input);
 }
@@ -84,7 +143,7 @@ static laves_result check_corners(const laves__mesh_input *input, const char *wh
   return LAVES_OK;
 }
 
-static laves_result check(const laves__mesh_input *input, laves_error *error) {
+laves_result laves__mesh_input_check(const laves__mesh_input *input, laves_error *error) {
   if (input->tet_count == 0) return laves__mesh_input_fail(input, error, "there are no tetrahedra in it");
   if (input->point_count > INT32_MAX) return laves__mesh_input_fail(input, error, "it has more than 2147483647 vertices");
   for (size_t i = 0; i < input->point_count; i++)
@@ -207,7 +266,7 @@ static bool transfer_tags(const laves__mesh_input *input, laves_mesh *mesh) {
 }
 
 laves_result laves__mesh_input_finish(laves__mesh_input *input, laves_mesh **mesh, laves_error *error) {
-  laves_result result = check(input, error);
+  laves_result result = laves__mesh_input_check(input, error);
   if (result != LAVES_OK) return result;
   if (input->higher_order && !drop_unused(input)) return laves__fail_memory(input->context, error);
   turn_if_all_negative(input);

@@ -4,6 +4,7 @@
  * order (but for elements in 2.2), so one function reads each section through next_int, next_size and next_double. Nodes
  * have numbers of their own, which are mapped to indices at the end: directly when they are consecutive, else by a sorted
  * table. Tets take their physical group as region and triangles as tag, or the number of their entity where they have none.
+ * Where the caller asks for values, the places of all $NodeData are noted and the wanted one is read at the end.
  * Source: Gmsh reference manual, "MSH file format" and "MSH file format version 2 (Legacy)". */
 #include <stdlib.h>
 #include <string.h>
@@ -33,6 +34,12 @@ typedef struct table {
   size_t count, capacity;
 } table;
 
+/* A section $NodeData with one number for each node. */
+typedef struct node_data {
+  const char *at; /* the first node's number and value */
+  int64_t count;
+} node_data;
+
 typedef struct reader {
   laves__mesh_input *input;
   laves__scan scan; /* its place serves binary parts too */
@@ -43,6 +50,9 @@ typedef struct reader {
   /* Corners by node number until all nodes are known. */
   int64_t *tet_nodes, *face_nodes;
   size_t tet_node_count, tet_node_capacity, face_node_count, face_node_capacity;
+  node_data *data;
+  laves__word *data_names;
+  size_t data_count, data_capacity, data_name_capacity;
 } reader;
 
 /* ---- tables ---- */
@@ -359,6 +369,52 @@ static laves_result read_elements4(reader *r, laves_error *error) {
   return result;
 }
 
+/* The name of a view: the first of its texts, each on a line. */
+static laves_result read_view_name(reader *r, laves__word *name, laves_error *error) {
+  int64_t count;
+  const laves_result result = text_count(r, &count, error);
+  for (int64_t i = 0; i < count && result == LAVES_OK; i++) {
+    if (!laves__scan_space(&r->scan)) return laves__scan_fail_expected(&r->scan, error, "the name of a view");
+    laves__word text = laves__scan_rest(&r->scan);
+    if (text.length >= 2 && text.at[0] == '"' && text.at[text.length - 1] == '"') {
+      text.at++;
+      text.length -= 2;
+    }
+    laves__scan_next_line(&r->scan);
+    if (i == 0) *name = text;
+  }
+  return result;
+}
+
+/* The head of $NodeData is text in binary files too: texts, numbers, and integers: time step, components, nodes. */
+static laves_result note_node_data(reader *r, laves_error *error) {
+  enum { STEP, COMPONENTS, NODES, KEPT };
+  laves_context *context = r->input->context;
+  laves__word name = {"", 0};
+  int64_t count, integers[KEPT] = {0}, integer = 0;
+  laves_result result = read_view_name(r, &name, error);
+  if (result == LAVES_OK) result = text_count(r, &count, error);
+  for (int64_t i = 0; result == LAVES_OK && i < count; i++) {
+    double number;
+    if (!laves__scan_space(&r->scan) || !laves__scan_double(&r->scan, &number))
+      return laves__scan_fail_expected(&r->scan, error, "a number in the head of a view");
+  }
+  if (result == LAVES_OK) result = text_count(r, &count, error);
+  for (int64_t i = 0; result == LAVES_OK && i < count; i++) {
+    if (!laves__scan_space(&r->scan) || !laves__scan_int(&r->scan, &integer))
+      return laves__scan_fail_expected(&r->scan, error, "an integer in the head of a view");
+    if (i < KEPT) integers[i] = integer;
+  }
+  if (result != LAVES_OK || integers[COMPONENTS] != 1) return result;
+  laves__scan_next_line(&r->scan);
+  if (!laves__grow(context, &r->data, &r->data_capacity, r->data_count + 1, sizeof *r->data) ||
+      !laves__grow(context, &r->data_names, &r->data_name_capacity, r->data_count + 1, sizeof *r->data_names))
+    return laves__fail_memory(context, error);
+  r->data[r->data_count] = (node_data){r->scan.at, integers[NODES]};
+  r->data_names[r->data_count++] = name;
+  return LAVES_OK;
+}
+
 /* Behind the line "$EndName"; sections with content that is not known are skipped by this alone. */
 static laves_result end_section(reader *r, laves__word name, laves_error *error) {
   static const char end[] = "$End";
@@ -383,6 +439,7 @@ static laves_result read_section(reader *r, laves__word name, laves_error *error
   if (laves__word_is(name, "Entities")) return r->version == 4 ? read_entities(r, error) : LAVES_OK;
   if (laves__word_is(name, "Nodes")) return r->version == 4 ? read_nodes4(r, error) : read_nodes2(r, error);
   if (laves__word_is(name, "Elements")) return r->version == 4 ? read_elements4(r, error) : read_elements2(r, error);
+  if (laves__word_is(name, "NodeData") && r->input->values.wanted) return note_node_data(r, error);
   return LAVES_OK;
 }
 
@@ -408,6 +465,31 @@ static laves_result resolve_all(reader *r, laves_error *error) {
   return result;
 }
 
+/* Reads the wanted view; of several time steps of one name the first. */
+static laves_result read_values(reader *r, laves_error *error) {
+  laves__mesh_input *input = r->input;
+  if (!input->values.wanted) return LAVES_OK;
+  size_t chosen = 0;
+  if (r->data_count == 0)
+    return laves__mesh_input_fail(input, error, "it has no section $NodeData with one number for each node");
+  const laves_result result = laves__mesh_input_choose_array(input, r->data_names, r->data_count, &chosen, error);
+  if (result != LAVES_OK) return result;
+  for (size_t i = 0; i < input->point_count; i++)
+    if (!laves__mesh_input_add_value(input, NAN)) return laves__fail_memory(input->context, error);
+  r->scan.at = r->data[chosen].at;
+  for (int64_t i = 0; i < r->data[chosen].count; i++) {
+    int64_t number;
+    double value;
+    if (!next_int(r, &number) || !next_double(r, &value)) return fail_short(r, error, "a node's number and value");
+    const numbered *node = table_find(&r->nodes, number);
+    if (!node)
+      return laves__mesh_input_fail(input, error, "a value is for node %lld, which the file does not have", (long long)number);
+    input->values.items[node->value] = value;
+    if (i % 65536 == 65535 && laves__mesh_input_cancelled(input, r->scan.at)) return laves__fail_cancelled(error);
+  }
+  return LAVES_OK;
+}
+
 laves_result laves__read_gmsh(laves__mesh_input *input, laves_error *error) {
   reader r = {.input = input, .scan = laves__scan_begin(input->name, input->begin, (size_t)(input->end - input->begin))};
   laves_result result = LAVES_OK;
@@ -424,10 +506,13 @@ laves_result laves__read_gmsh(laves__mesh_input *input, laves_error *error) {
     if (result == LAVES_OK) result = end_section(&r, name, error);
   }
   if (result == LAVES_OK) result = resolve_all(&r, error);
+  if (result == LAVES_OK) result = read_values(&r, error);
   laves_context *context = input->context;
   laves__free(context, r.nodes.items, r.nodes.capacity, sizeof *r.nodes.items);
   for (int d = 0; d < 2; d++) laves__free(context, r.entities[d].items, r.entities[d].capacity, sizeof *r.entities[d].items);
   laves__free(context, r.tet_nodes, r.tet_node_capacity, sizeof *r.tet_nodes);
   laves__free(context, r.face_nodes, r.face_node_capacity, sizeof *r.face_nodes);
+  laves__free(context, r.data, r.data_capacity, sizeof *r.data);
+  laves__free(context, r.data_names, r.data_name_capacity, sizeof *r.data_names);
   return result;
 }

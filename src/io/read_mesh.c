@@ -22,15 +22,6 @@ static size_t tetgen_stem(const char *path) {
   return 0;
 }
 
-/* Whether the text is among the first bytes, where a file says what it is. */
-static bool begins_with_somewhere(const laves__mesh_input *input, const char *text) {
-  enum { LOOK = 4096 };
-  const size_t available = (size_t)(input->end - input->begin), length = strlen(text);
-  for (size_t i = 0; i < LOOK && i + length <= available; i++)
-    if (memcmp(input->begin + i, text, length) == 0) return true;
-  return false;
-}
-
 static bool is_medit_binary(const laves__mesh_input *input) {
   static const char little[] = {1, 0, 0, 0}, big[] = {0, 0, 0, 1};
   if (input->end - input->begin < 8) return false;
@@ -39,9 +30,9 @@ static bool is_medit_binary(const laves__mesh_input *input) {
 
 static read_fn *find_reader(const laves__mesh_input *input) {
   if (is_medit_binary(input)) return laves__read_medit_binary;
-  if (begins_with_somewhere(input, "<VTKFile")) return laves__read_vtu;
-  if (begins_with_somewhere(input, "$MeshFormat")) return laves__read_gmsh;
-  if (begins_with_somewhere(input, "MeshVersionFormatted")) return laves__read_medit_text;
+  if (laves__mesh_input_mentions(input, "<VTKFile")) return laves__read_vtu;
+  if (laves__mesh_input_mentions(input, "$MeshFormat")) return laves__read_gmsh;
+  if (laves__mesh_input_mentions(input, "MeshVersionFormatted")) return laves__read_medit_text;
   return NULL;
 }
 

@@ -2,7 +2,8 @@
  * headers of 32 and 64 bits, any number type, any number of pieces.
  *
  * First the XML is walked, which yields the pieces and for each array of interest where its data stands; then the arrays of
- * each piece are decoded and its tets and triangles picked out. Sizes that the XML claims are believed only as far as the
+ * each piece are decoded and its tets and triangles picked out, with one array of values for points or tets where the caller
+ * asks for it. Sizes that the XML claims are believed only as far as the
  * bytes in the file can make them true: compressed bytes expand by at most 1032, the limit of deflate.
  * Source: VTK file formats, https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html */
 #include <string.h>
@@ -33,13 +34,20 @@ typedef struct source {
   const char *begin, *end; /* of inline data */
 } source;
 
-enum { POINTS, CONNECTIVITY, OFFSETS, TYPES, REGION, ARRAY_COUNT };
-static const char *const array_names[] = {"the points", "connectivity", "offsets", "types", "the regions"};
+enum { POINTS, CONNECTIVITY, OFFSETS, TYPES, REGION, VALUES, ARRAY_COUNT };
+static const char *const array_names[] = {"the points", "connectivity", "offsets", "types", "the regions", "the values"};
 
 typedef struct piece {
   size_t point_count, cell_count;
   source sources[ARRAY_COUNT];
 } piece;
+
+/* An array that may be the one with the wanted values: one number for each point or cell. */
+typedef struct candidate {
+  bool per_cell;
+  size_t piece;
+  source source;
+} candidate;
 
 typedef struct reader {
   laves__mesh_input *input;
@@ -49,6 +57,9 @@ typedef struct reader {
   double decoded;       /* bytes of all arrays so far; pieces may share data, so each alone tells too little */
   piece *pieces;
   size_t piece_count, piece_capacity;
+  candidate *candidates;
+  laves__word *candidate_names;
+  size_t candidate_count, candidate_capacity, candidate_name_capacity;
 } reader;
 
 /* ---- XML ---- */
@@ -201,6 +212,27 @@ static laves_result read_source(reader *r, const tag *t, const char *content, so
   return LAVES_OK;
 }
 
+/* Keeps an array that may be wanted; arrays of vectors and of text are none. */
+static laves_result add_candidate(reader *r, laves__word section, const tag *t, const char *content, laves_error *error) {
+  laves_context *context = r->input->context;
+  candidate c = {.per_cell = laves__word_is(section, "CellData"), .piece = r->piece_count - 1};
+  laves__word name = {"", 0};
+  size_t components;
+  if (!r->input->values.wanted || (!c.per_cell && !laves__word_is(section, "PointData"))) return LAVES_OK;
+  if ((attribute_count(t, "NumberOfComponents", &components) && components > 1) || attribute_is(t, "type", "String"))
+    return LAVES_OK;
+  attribute(t, "Name", &name);
+  const laves_result result = read_source(r, t, content, &c.source, error);
+  if (result != LAVES_OK) return result;
+  const size_t needed = r->candidate_count + 1;
+  if (!laves__grow(context, &r->candidates, &r->candidate_capacity, needed, sizeof *r->candidates) ||
+      !laves__grow(context, &r->candidate_names, &r->candidate_name_capacity, needed, sizeof *r->candidate_names))
+    return laves__fail_memory(context, error);
+  r->candidates[r->candidate_count] = c;
+  r->candidate_names[r->candidate_count++] = name;
+  return LAVES_OK;
+}
+
 static laves_result find_appended(reader *r, const tag *t, const char *content, laves_error *error) {
   r->appended_base64 = attribute_is(t, "encoding", "base64");
   while (content < r->input->end && is_space(*content)) content++;
@@ -227,12 +259,50 @@ static laves_result read_structure(reader *r, laves_error *error) {
     } else if (laves__word_is(t.name, "DataArray") && r->piece_count > 0) {
       const int array = array_of(section, &t);
       if (array < ARRAY_COUNT) result = read_source(r, &t, at, &r->pieces[r->piece_count - 1].sources[array], error);
+      if (result == LAVES_OK) result = add_candidate(r, section, &t, at, error);
     } else if (!laves__word_is(t.name, "/DataArray")) {
       section = t.name;
     }
   }
   if (result == LAVES_OK && !file_seen) return laves__mesh_input_fail(r->input, error, "there is no VTKFile element in it");
   return result;
+}
+
+/* Leaves only the candidates of points, or of cells. */
+static void keep_candidates(reader *r, bool per_cell) {
+  size_t kept = 0;
+  for (size_t i = 0; i < r->candidate_count; i++) {
+    if (r->candidates[i].per_cell != per_cell) continue;
+    r->candidates[kept] = r->candidates[i];
+    r->candidate_names[kept++] = r->candidate_names[i];
+  }
+  r->candidate_count = kept;
+}
+
+static bool same_name(laves__word a, laves__word b) { return a.length == b.length && memcmp(a.at, b.at, a.length) == 0; }
+
+/* Arrays of points come first: only without any that is meant are those of cells looked at. */
+static bool prefer_points(const reader *r) {
+  const char *wanted = r->input->values.array;
+  for (size_t i = 0; i < r->candidate_count; i++)
+    if (!r->candidates[i].per_cell && (!wanted || same_name(r->candidate_names[i], (laves__word){wanted, strlen(wanted)})))
+      return true;
+  return false;
+}
+
+/* Gives each piece the source of the values. */
+static laves_result choose_values(reader *r, laves_error *error) {
+  laves__mesh_values *values = &r->input->values;
+  if (!values->wanted) return LAVES_OK;
+  size_t chosen = 0;
+  values->per_tet = !prefer_points(r);
+  if (!values->array || !values->per_tet) keep_candidates(r, values->per_tet);
+  const laves_result result = laves__mesh_input_choose_array(r->input, r->candidate_names, r->candidate_count, &chosen, error);
+  if (result != LAVES_OK) return result;
+  const laves__word name = r->candidate_names[chosen];
+  for (size_t i = r->candidate_count; i-- > 0;) /* backwards: of two equal names in a piece the first counts */
+    if (same_name(r->candidate_names[i], name)) r->pieces[r->candidates[i].piece].sources[VALUES] = r->candidates[i].source;
+  return LAVES_OK;
 }
 
 /* ---- bytes ---- */
@@ -504,6 +574,8 @@ static laves_result add_cell(reader *r, const array arrays[ARRAY_COUNT], size_t 
   }
   r->input->higher_order |= size > corners;
   const int32_t region = region_at(&arrays[REGION], cell);
+  if (corners == 4 && arrays[VALUES].data && !laves__mesh_input_add_value(r->input, real_at(&arrays[VALUES], cell)))
+    return laves__fail_memory(r->input->context, error);
   const bool enough =
       corners == 4 ? laves__mesh_input_add_tet(r->input, indices, region) : laves__mesh_input_add_face(r->input, indices, region);
   return enough ? LAVES_OK : laves__fail_memory(r->input->context, error);
@@ -536,6 +608,16 @@ static laves_result add_points(reader *r, const piece *p, laves_error *error) {
   return result;
 }
 
+/* The values of a piece's points; those of tets are picked out with the cells. */
+static laves_result add_values(reader *r, const piece *p, laves_error *error) {
+  array values = {0};
+  laves_result result = read_array(r, p, VALUES, p->point_count, &values, error);
+  for (size_t i = 0; i < p->point_count && result == LAVES_OK; i++)
+    if (!laves__mesh_input_add_value(r->input, real_at(&values, i))) result = laves__fail_memory(r->input->context, error);
+  free_array(r, &values);
+  return result;
+}
+
 static laves_result check_integers(reader *r, const piece *p, laves_error *error) {
   for (int i = CONNECTIVITY; i <= TYPES; i++)
     if (p->sources[i].place != ABSENT && p->sources[i].kind >= FLOAT32)
@@ -549,11 +631,15 @@ static laves_result read_piece(reader *r, const piece *p, laves_error *error) {
   const size_t point_base = r->input->point_count;
   laves_result result = check_integers(r, p, error);
   if (result == LAVES_OK) result = add_points(r, p, error);
+  const laves__mesh_values *values = &r->input->values;
+  if (result == LAVES_OK && values->wanted && !values->per_tet) result = add_values(r, p, error);
   if (result != LAVES_OK || p->cell_count == 0) return result;
   result = read_array(r, p, OFFSETS, p->cell_count, &arrays[OFFSETS], error);
   if (result == LAVES_OK) result = read_array(r, p, TYPES, p->cell_count, &arrays[TYPES], error);
   if (result == LAVES_OK && p->sources[REGION].place != ABSENT)
     result = read_array(r, p, REGION, p->cell_count, &arrays[REGION], error);
+  if (result == LAVES_OK && values->wanted && values->per_tet)
+    result = read_array(r, p, VALUES, p->cell_count, &arrays[VALUES], error);
   if (result == LAVES_OK) {
     const int64_t corners = integer_at(&arrays[OFFSETS], p->cell_count - 1);
     if (corners < 0 || (uint64_t)corners > SIZE_MAX / 64) result = fail_array(r, array_names[OFFSETS], error);
@@ -567,7 +653,10 @@ static laves_result read_piece(reader *r, const piece *p, laves_error *error) {
 laves_result laves__read_vtu(laves__mesh_input *input, laves_error *error) {
   reader r = {.input = input};
   laves_result result = read_structure(&r, error);
+  if (result == LAVES_OK) result = choose_values(&r, error);
   for (size_t i = 0; i < r.piece_count && result == LAVES_OK; i++) result = read_piece(&r, &r.pieces[i], error);
   laves__free(input->context, r.pieces, r.piece_capacity, sizeof *r.pieces);
+  laves__free(input->context, r.candidates, r.candidate_capacity, sizeof *r.candidates);
+  laves__free(input->context, r.candidate_names, r.candidate_name_capacity, sizeof *r.candidate_names);
   return result;
 }
