@@ -21,6 +21,7 @@ FOLDERS = {
     "base": "Memory, errors, threads, exact predicates; knows no other folder",
     "mesh": "Arrays of vertices and tets, their adjacency and their quality",
     "domain": "What is inside: triangle surfaces, implicit solids, functions of the caller's, behind `oracle.h`",
+    "size": "How long edges shall be, from place to place",
     "background": "The tiling as a table and as sparse bricks",
     "classify": "Which bricks and sites lie inside",
     "snap": "The cover of the crossing edges, moved on to the surface",
