@@ -13,13 +13,13 @@ enum {
   QUICK_EDGES = 3, /* the shortest edges of a tet, tried when one round of smoothing is asked for; of those that helped
                       nine in ten were among them */
 };
-/* Sizes: contracting a longer edge hardly ever helps (3 of 178, in 5400 attempts). */
+/* Local sizes: contracting a longer edge hardly ever helps (3 of 178, in 5400 attempts). */
 static const double longest = 1.2;
 /* A merge that leaves a quality below this share of the old worst is not worth smoothing. */
 static const double hopeless = 0.25;
 /* Nor one whose own smoothing does not come this near to the old worst. */
 static const double promising = 0.8;
-/* Faces after a contraction may lie this far from the surface, in sizes, and this much across it (cosine of the angle
+/* Faces after a contraction may lie this far from the surface, in local sizes, and this much across it (cosine of the angle
  * between the normals), or as much as those before. */
 static const double deviation_max = 0.10, alignment_min = 0.8;
 
@@ -184,21 +184,22 @@ static double worst_touched(const laves__layer *layer, const laves__journal *j) 
 
 /* How the boundary faces around a vertex lie to the surface. */
 typedef struct fit {
-  double deviation; /* largest distance of centroids and edge midpoints, sizes */
+  double deviation; /* largest distance of centroids and edge midpoints, local sizes */
   double alignment; /* least cosine between a face's normal and the surface's */
 } fit;
 
-static void fit_point(const laves__frame *frame, laves__vec3 p, laves__vec3 face_normal, uint32_t hint, fit *f) {
+static void fit_point(const laves__frame *frame, laves__vec3 p, laves__vec3 face_normal, uint32_t hint, double scale, fit *f) {
   laves__vec3 foot, normal;
-  if (!laves__frame_project(frame, p, 1, &hint, &foot, &normal)) {
+  if (!laves__frame_project(frame, p, scale, &hint, &foot, &normal)) {
     *f = (fit){1, -1};
     return;
   }
-  f->deviation = fmax(f->deviation, v3_distance(p, foot));
+  f->deviation = fmax(f->deviation, v3_distance(p, foot) / scale);
   f->alignment = fmin(f->alignment, v3_dot(face_normal, normal));
 }
 
 static void fit_star(const laves__frame *frame, const laves__layer *layer, int32_t a, fit *f) {
+  const double scale = laves__layer_scale(layer, a);
   const laves__star *star = &layer->star[a];
   for (int i = 0; i < star->count; i++) {
     const int32_t t = star->tet[i];
@@ -207,8 +208,8 @@ static void fit_star(const laves__frame *frame, const laves__layer *layer, int32
       laves__vec3 p[3];
       for (int v = 0; v < 3; v++) p[v] = layer->position[layer->tet[t][laves__tet_face[k][v]]];
       const laves__vec3 normal = v3_unit(v3_cross(v3_sub(p[1], p[0]), v3_sub(p[2], p[0])));
-      fit_point(frame, v3_scale(v3_add(v3_add(p[0], p[1]), p[2]), 1.0 / 3), normal, layer->hint[a], f);
-      for (int v = 0; v < 3; v++) fit_point(frame, v3_lerp(p[v], p[(v + 1) % 3], 0.5), normal, layer->hint[a], f);
+      fit_point(frame, v3_scale(v3_add(v3_add(p[0], p[1]), p[2]), 1.0 / 3), normal, layer->hint[a], scale, f);
+      for (int v = 0; v < 3; v++) fit_point(frame, v3_lerp(p[v], p[(v + 1) % 3], 0.5), normal, layer->hint[a], scale, f);
     }
   }
 }
@@ -265,10 +266,12 @@ bool laves__contract_tet(const laves__frame *frame, const laves__measure *m, dou
                          int rounds, laves__journal *journal) {
   const contraction c = {frame, m, target, rounds};
   int order[6];
-  double length[6];
+  double length[6]; /* squared, in local sizes */
   for (int e = 0; e < 6; e++) {
     const int32_t *corner = layer->tet[tet];
-    length[e] = v3_norm2(v3_sub(layer->position[corner[laves__tet_edge[e][0]]], layer->position[corner[laves__tet_edge[e][1]]]));
+    const int32_t v = corner[laves__tet_edge[e][0]], w = corner[laves__tet_edge[e][1]];
+    const double scale = 0.5 * (laves__layer_scale(layer, v) + laves__layer_scale(layer, w));
+    length[e] = v3_norm2(v3_sub(layer->position[v], layer->position[w])) / (scale * scale);
     int at = e;
     for (; at > 0 && length[order[at - 1]] > length[e]; at--) order[at] = order[at - 1];
     order[at] = e;

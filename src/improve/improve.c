@@ -3,7 +3,8 @@
  * After a quick Laplace start, passes over the tets below the target. Space is cut in blocks, coloured by the parity of
  * their coordinates; the bad tets of one block are worked on in turn, worst first, and all blocks of a colour at the same
  * time. What an operation reads and changes lies within about six sizes of its tet, and blocks of one colour are fifteen
- * apart, so they can't meet: the result is the same for any number of threads.
+ * apart, so they can't meet: the result is the same for any number of threads. Where sizes vary, so do blocks: tets whose
+ * size is at most a power of two are worked on in blocks of that many times the side, the largest first.
  *
  * First passes only smooth; when that no longer helps, contraction joins in; the few that are still clearly outside are
  * treated once more with more smoothing around each contraction. */
@@ -25,7 +26,7 @@ static const double rough_share = 0.2;
 static const double rough_admit = 0.4; /* quality: about 26 degrees */
 /* Where that is known beforehand, smoothing leaves those alone, too, that are better than this. */
 static const double brief_admit = 0.6;      /* about 32 degrees */
-static const double block_side = 15;        /* sizes; see above */
+static const double block_side = 15;        /* local sizes; see above */
 static const double worthwhile = 0.02;      /* share of bad tets that a pass must cure to be followed by its like */
 static const double thorough_below = 0.985; /* quality below which the few that remain get more patience */
 static const double peel_below = 0.5;       /* quality below which a tet between two surfaces is taken away, if it can be */
@@ -40,9 +41,9 @@ laves__measure laves__measure_of(const laves__window *w) {
                           .held_high = w->held_min > 0 ? 1 + cos(w->held_max * radians) : -1};
 }
 
-/* A bad tet and the block of space in which it is worked on. */
+/* A bad tet and the block of space in which it is worked on; blocks of a level are 2^level times as large. */
 typedef struct patient {
-  int32_t colour, block[3];
+  int32_t level, colour, block[3];
   int32_t tet;
   double quality;
 } patient;
@@ -53,7 +54,7 @@ typedef struct work {
   double target;
   laves__layer *layer;
   laves__journal *journal; /* one for each worker */
-  patient *item;           /* by colour, then block, then quality */
+  patient *item;           /* by level, then colour, then block, then quality */
   size_t count, capacity;
   size_t *block; /* first item of each block, and the end */
   size_t block_count, block_capacity;
@@ -75,22 +76,36 @@ static void measure_all(void *user, size_t begin, size_t end, int worker) {
 
 static bool is_bad(const work *w, int32_t t) { return w->layer->tet[t][0] >= 0 && w->layer->quality[t] < w->admit; }
 
+/* The least power of two that no size at the corners of a tet exceeds. */
+static int level_of(const laves__layer *layer, int32_t tet) {
+  double largest = laves__layer_scale(layer, layer->tet[tet][0]);
+  for (int k = 1; k < 4; k++) largest = fmax(largest, laves__layer_scale(layer, layer->tet[tet][k]));
+  int level;
+  return frexp(largest, &level) == 0.5 ? level - 1 : level;
+}
+
 static patient admit(const laves__layer *layer, int32_t tet) {
   laves__vec3 p[4];
   laves__layer_points(layer, tet, p);
-  const laves__vec3 c = v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25 / block_side);
-  patient item = {
-      .block = {(int32_t)floor(c.x), (int32_t)floor(c.y), (int32_t)floor(c.z)}, .tet = tet, .quality = layer->quality[tet]};
+  const int level = level_of(layer, tet);
+  const laves__vec3 c = v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25 / ldexp(block_side, level));
+  patient item = {.level = level,
+                  .block = {(int32_t)floor(c.x), (int32_t)floor(c.y), (int32_t)floor(c.z)},
+                  .tet = tet,
+                  .quality = layer->quality[tet]};
   item.colour = (item.block[0] & 1) + 2 * (item.block[1] & 1) + 4 * (item.block[2] & 1);
   return item;
 }
 
 static bool same_block(const patient *a, const patient *b) {
-  return a->block[0] == b->block[0] && a->block[1] == b->block[1] && a->block[2] == b->block[2];
+  return a->level == b->level && a->block[0] == b->block[0] && a->block[1] == b->block[1] && a->block[2] == b->block[2];
 }
 
-static int by_colour_block_quality(const void *left, const void *right) {
+static bool same_colour(const patient *a, const patient *b) { return a->level == b->level && a->colour == b->colour; }
+
+static int by_level_colour_block_quality(const void *left, const void *right) {
   const patient *a = left, *b = right;
+  if (a->level != b->level) return a->level > b->level ? -1 : 1;
   if (a->colour != b->colour) return a->colour < b->colour ? -1 : 1;
   for (int axis = 2; axis >= 0; axis--)
     if (a->block[axis] != b->block[axis]) return a->block[axis] < b->block[axis] ? -1 : 1;
@@ -106,7 +121,7 @@ static bool admit_all(work *w) {
     if (!laves__grow(w->layer->context, &w->item, &w->capacity, w->count + 1, sizeof *w->item)) return false;
     w->item[w->count++] = admit(w->layer, (int32_t)t);
   }
-  if (w->count) qsort(w->item, w->count, sizeof *w->item, by_colour_block_quality);
+  if (w->count) qsort(w->item, w->count, sizeof *w->item, by_level_colour_block_quality);
   for (size_t i = 0; i <= w->count; i++) {
     if (i > 0 && i < w->count && same_block(&w->item[i - 1], &w->item[i])) continue;
     if (!laves__grow(w->layer->context, &w->block, &w->block_capacity, w->block_count + 1, sizeof *w->block)) return false;
@@ -176,7 +191,7 @@ static laves_result run_pass(work *w, size_t *before, laves_error *error) {
   if (w->count) w->progress = fmax(w->progress, 1 - (double)w->count / (double)w->first_count);
   for (size_t first = 0; first < w->block_count;) {
     size_t end = first + 1;
-    while (end < w->block_count && w->item[w->block[end]].colour == w->item[w->block[first]].colour) end++;
+    while (end < w->block_count && same_colour(&w->item[w->block[end]], &w->item[w->block[first]])) end++;
     colour_range range = {w, first};
     if (!laves__parallel_for(w->layer->context, NULL, end - first, 1, mend_blocks, &range)) return laves__fail_cancelled(error);
     first = end;

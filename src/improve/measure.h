@@ -4,14 +4,14 @@
  *     and VL / vt,  VL = sqrt(2) 6V / l_rms^3  the volume-length ratio (1 for the regular tetrahedron)
  *
  * q >= 1 means inside the window. Where a second, wider window is held, tets outside it count as flat, so that no step that
- * makes one is taken. Flat and inverted tets get their volume (at most FLAT), so that untangling is part of
- * the same ascent. Angles come from the four face normals N_i (outwards, opposite corner i): cos t_ij = -n_i . n_j. */
+ * makes one is taken. Flat and inverted tets get their volume (at most FLAT, in cubes of the local size), so that untangling
+ * is part of the same ascent. Angles come from the four face normals N_i (outwards, opposite corner i): cos t_ij = -n_i . n_j. */
 #ifndef LAVES_IMPROVE_MEASURE_H
 #define LAVES_IMPROVE_MEASURE_H
 
 #include "improve/improve.h"
 
-/* Six times the volume, in cubes of the size, below which a tet counts as flat; a regular one has 0.71. */
+/* Six times the volume, in cubes of the local size, below which a tet counts as flat; a regular one has 0.71. */
 #define LAVES__FLAT 1e-4
 #define LAVES__SQRT2 1.4142135623730951
 
@@ -41,11 +41,12 @@ static inline double laves__edge_sum(const laves__vec3 p[4]) {
          v3_norm2(v3_sub(p[2], p[1])) + v3_norm2(v3_sub(p[3], p[1])) + v3_norm2(v3_sub(p[3], p[2]));
 }
 
-static inline double laves__quality(const laves__measure *m, const laves__vec3 p[4]) {
+/* `cube`: that of the local size. */
+static inline double laves__quality(const laves__measure *m, const laves__vec3 p[4], double cube) {
   laves__vec3 n[4];
   laves__face_normals(p, n);
   const double volume6 = -v3_dot(n[3], v3_sub(p[3], p[0]));
-  if (!(volume6 > LAVES__FLAT)) return volume6;
+  if (!(volume6 > LAVES__FLAT * cube)) return volume6 / cube;
   double per_length[4];
   for (int i = 0; i < 4; i++) per_length[i] = 1 / sqrt(v3_norm2(n[i]));
   double least = 1, most = -1; /* of n_i . n_j */
@@ -67,7 +68,7 @@ static inline double laves__quality(const laves__measure *m, const laves__vec3 p
 static inline double laves__layer_quality(const laves__measure *m, const laves__layer *layer, int32_t tet) {
   laves__vec3 p[4];
   laves__layer_points(layer, tet, p);
-  return laves__quality(m, p);
+  return laves__quality(m, p, laves__layer_cube(layer, tet));
 }
 
 #endif

@@ -6,7 +6,7 @@
 #include "base/predicates.h"
 
 static const double share = 0.7;          /* of the way to the mean */
-static const double surface_reach = 0.75; /* sizes */
+static const double surface_reach = 0.75; /* local sizes */
 
 typedef struct place {
   laves__vec3 position, normal;
@@ -43,8 +43,9 @@ static void find_places(void *user, size_t begin, size_t end, int worker) {
     if (count == 0) continue;
     const laves__vec3 aim = v3_lerp(layer->position[v], v3_scale(sum, 1.0 / count), share);
     p->hint = layer->hint[v];
-    p->moved = laves__frame_project(s->frame, aim, surface_reach, &p->hint, &p->position, &p->normal) &&
-               v3_distance(p->position, aim) <= surface_reach;
+    const double reach = surface_reach * laves__layer_scale(layer, (int32_t)v);
+    p->moved =
+        laves__frame_project(s->frame, aim, reach, &p->hint, &p->position, &p->normal) && v3_distance(p->position, aim) <= reach;
   }
 }
 

@@ -25,9 +25,9 @@ enum {
   EXCHANGES_MAX = 60, /* of weight, for one dual problem */
 };
 static const double active_range = 0.4;   /* functions this far above the least take part */
-static const double first_tau = 0.05;     /* size^2; typical steps are a tenth of the size */
-static const double longest_step = 0.5;   /* sizes */
-static const double surface_reach = 0.75; /* sizes: how far a trial point may be from the surface */
+static const double first_tau = 0.05;     /* local size^2; typical steps are a tenth of the size */
+static const double longest_step = 0.5;   /* local sizes */
+static const double surface_reach = 0.75; /* local sizes: how far a trial point may be from the surface */
 static const double least_gain = 0.005;   /* foretold gains below this are not worth a trial */
 static const double accept_share = 0.1, good_share = 0.5, exact_enough = 0.02;
 
@@ -60,14 +60,14 @@ static laves__vec3 dot_gradient(const laves__vec3 p[4], int c, const laves__vec3
   return g;
 }
 
-/* Adds the functions of one tet that lie below `ceiling`. */
-static void add_tet(bundle *b, const laves__measure *m, const laves__vec3 p[4], int c, double ceiling) {
+/* Adds the functions of one tet that lie below `ceiling`; `cube` is that of the local size. */
+static void add_tet(bundle *b, const laves__measure *m, const laves__vec3 p[4], double cube, int c, double ceiling) {
   laves__vec3 n[4], unit[4];
   double per_length[4];
   laves__face_normals(p, n);
   const double volume6 = -v3_dot(n[3], v3_sub(p[3], p[0]));
-  if (!(volume6 > LAVES__FLAT)) {
-    add_term(b, volume6, v3_scale(n[c], -1));
+  if (!(volume6 > LAVES__FLAT * cube)) {
+    add_term(b, volume6 / cube, v3_scale(n[c], -1 / cube));
     return;
   }
   for (int i = 0; i < 4; i++) {
@@ -83,8 +83,8 @@ static void add_tet(bundle *b, const laves__measure *m, const laves__vec3 p[4], 
     if (low < ceiling) add_term(b, low, v3_scale(g, m->low_scale));
     if (high < ceiling) add_term(b, high, v3_scale(g, -m->high_scale));
   }
-  const double mean = laves__edge_sum(p) / 6, cube = mean * sqrt(mean);
-  const double scale = LAVES__SQRT2 * m->length_scale / cube, length = scale * volume6;
+  const double mean = laves__edge_sum(p) / 6;
+  const double scale = LAVES__SQRT2 * m->length_scale / (mean * sqrt(mean)), length = scale * volume6;
   if (length >= ceiling) return;
   laves__vec3 spread = {0, 0, 0}; /* half the gradient of the sum of squared edges */
   for (int k = 0; k < 4; k++) spread = v3_add(spread, v3_sub(p[c], p[k]));
@@ -98,7 +98,8 @@ static void fill_bundle(bundle *b, const laves__measure *m, const laves__layer *
     if (layer->quality[star->tet[i]] >= least + active_range) continue; /* none of its functions is below that */
     laves__vec3 p[4];
     laves__layer_points(layer, star->tet[i], p);
-    add_tet(b, m, p, laves__layer_corner(layer, star->tet[i], vertex), least + active_range);
+    add_tet(b, m, p, laves__layer_cube(layer, star->tet[i]), laves__layer_corner(layer, star->tet[i], vertex),
+            least + active_range);
   }
   if (layer->depth[vertex] == 0) {
     const laves__vec3 n = layer->normal[vertex];
@@ -150,7 +151,7 @@ static int least_model(const bundle *b, double tau, laves__vec3 sum, double *mod
 
 /* Solves the dual for one tau; returns the step and the gain that the model foretells. Only a handful of functions carry
  * weight, so the problem is solved on a working set that grows by the function which the last step would make the worst. */
-static laves__vec3 solve_bundle(bundle *b, double tau, double least, double *gain) {
+static laves__vec3 solve_bundle(bundle *b, double tau, double least, double longest, double *gain) {
   laves__vec3 sum = {0, 0, 0};
   for (int i = 0; i < b->working_count; i++) sum = v3_mad(sum, b->gradient[b->working[i]], b->weight[i]);
   for (;;) {
@@ -167,7 +168,7 @@ static laves__vec3 solve_bundle(bundle *b, double tau, double least, double *gai
   }
   laves__vec3 step = v3_scale(sum, tau);
   const double length = v3_norm(step);
-  if (length > longest_step) step = v3_scale(step, longest_step / length);
+  if (length > longest) step = v3_scale(step, longest / length);
   return step;
 }
 
@@ -193,7 +194,7 @@ static bool try_place(const laves__measure *m, laves__layer *layer, int32_t vert
   for (int i = 0; good && i < star->count; i++) {
     laves__vec3 p[4];
     laves__layer_points(layer, star->tet[i], p);
-    quality[i] = laves__quality(m, p);
+    quality[i] = laves__quality(m, p, laves__layer_cube(layer, star->tet[i]));
     /* A volume well above rounding is positive without an exact test; coordinates are some thousands at most. */
     good = quality[i] > limit && (quality[i] > LAVES__FLAT || laves__orient3d(p[0], p[1], p[2], p[3]) > 0);
   }
@@ -209,7 +210,8 @@ static bool try_place(const laves__measure *m, laves__layer *layer, int32_t vert
 bool laves__smooth_vertex(const laves__frame *frame, const laves__measure *m, double target, laves__layer *layer, int32_t vertex,
                           laves__journal *journal) {
   const bool on_surface = layer->depth[vertex] == 0;
-  double tau = first_tau;
+  const double scale = laves__layer_scale(layer, vertex), reach = surface_reach * scale;
+  double tau = first_tau * scale * scale;
   bool moved = false;
   bundle b;
   for (int step = 0; step < STEPS_MAX; step++) {
@@ -220,14 +222,14 @@ bool laves__smooth_vertex(const laves__frame *frame, const laves__measure *m, do
     bool accepted = false;
     for (int attempt = 0; attempt < TRIES_MAX && !accepted; attempt++) {
       double gain;
-      laves__vec3 place = v3_add(layer->position[vertex], solve_bundle(&b, tau, least, &gain)), normal = {0, 0, 0};
+      laves__vec3 place = v3_add(layer->position[vertex], solve_bundle(&b, tau, least, longest_step * scale, &gain));
+      laves__vec3 normal = {0, 0, 0};
       if (gain < least_gain) return moved;
       uint32_t hint = layer->hint[vertex];
       bool there = true;
       if (on_surface) {
         laves__vec3 foot;
-        there =
-            laves__frame_project(frame, place, surface_reach, &hint, &foot, &normal) && v3_distance(foot, place) <= surface_reach;
+        there = laves__frame_project(frame, place, reach, &hint, &foot, &normal) && v3_distance(foot, place) <= reach;
         place = foot;
       }
       if (there && try_place(m, layer, vertex, place, least + accept_share * gain, journal)) {
@@ -250,7 +252,9 @@ bool laves__smooth_vertex(const laves__frame *frame, const laves__measure *m, do
 bool laves__settle_vertex(const laves__frame *frame, const laves__measure *m, double floor, laves__layer *layer, int32_t vertex) {
   uint32_t hint = layer->hint[vertex];
   laves__vec3 foot, normal;
-  if (!laves__frame_project(frame, layer->position[vertex], 2 * surface_reach, &hint, &foot, &normal)) return false;
+  if (!laves__frame_project(frame, layer->position[vertex], 2 * surface_reach * laves__layer_scale(layer, vertex), &hint, &foot,
+                            &normal))
+    return false;
   const double least = laves__star_quality(layer, vertex);
   if (!try_place(m, layer, vertex, foot, least < floor ? least : floor, NULL)) return false;
   layer->normal[vertex] = normal;

@@ -62,6 +62,13 @@ static inline int laves__layer_corner(const laves__layer *layer, int32_t tet, in
 static inline double laves__layer_scale(const laves__layer *layer, int32_t vertex) {
   return layer->scale ? (double)layer->scale[vertex] : 1;
 }
+/* The cube of the local size around a tet: what its volume is measured by. */
+static inline double laves__layer_cube(const laves__layer *layer, int32_t tet) {
+  if (!layer->scale) return 1;
+  const int32_t *t = layer->tet[tet];
+  const double mean = 0.25 * ((double)layer->scale[t[0]] + layer->scale[t[1]] + layer->scale[t[2]] + layer->scale[t[3]]);
+  return mean * mean * mean;
+}
 static inline bool laves__layer_moves(const laves__layer *layer, int32_t vertex) {
   return layer->depth[vertex] <= LAVES__DEPTH_MOVES;
 }
