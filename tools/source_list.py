@@ -23,6 +23,7 @@ FOLDERS = {
     "domain": "What is inside: triangle surfaces, implicit solids, functions of the caller's, behind `oracle.h`",
     "size": "How long edges shall be, from place to place",
     "background": "The tiling as a table and as sparse bricks",
+    "graded": "The same of varying size: an octree, both lattices, and what joins them",
     "classify": "Which bricks and sites lie inside",
     "snap": "The cover of the crossing edges, moved on to the surface",
     "stuff": "The same by warping and cutting, with a proved window",

@@ -1,0 +1,116 @@
+/* Which sites go.
+ *
+ * Candidates have colour 2 or 3 and only leaves of one side around, with one more layer of such leaves beyond. Of those, a
+ * site whose partners mostly stay would leave a hole: sites with fewer than `bonds_min` partners that go stay, until no
+ * more do. What is left is independent of the order. */
+#include "graded/tiles.h"
+
+#include <string.h>
+
+enum { BONDS_MIN = 2 };
+
+const int8_t laves__bond[4][3] = {{-1, -1, -1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
+
+/* The corner `k` of a leaf. */
+static uint64_t corner_key(const laves__node *n, int k) {
+  return laves__key_of(n->at[0] + (k & 1) * n->side, n->at[1] + (k >> 1 & 1) * n->side, n->at[2] + (k >> 2) * n->side);
+}
+
+static laves_result list_corners(const laves__octree *tree, laves__sites *sites, laves_error *error) {
+  const size_t count = 8 * tree->leaf_count;
+  uint64_t *keys = laves__alloc(tree->context, count, sizeof *keys);
+  if (!keys) return laves__fail_memory(tree->context, error);
+  for (size_t i = 0; i < tree->leaf_count; i++)
+    for (int k = 0; k < 8; k++) keys[8 * i + (size_t)k] = corner_key(&tree->node[tree->leaf[i]], k);
+  const bool done = laves__key_table_make(tree->context, keys, count, count, &sites->corner);
+  return done ? LAVES_OK : laves__fail_memory(tree->context, error);
+}
+
+laves__site_view laves__site_look(const laves__sites *sites, size_t site) {
+  const laves__octree *tree = sites->tree;
+  laves__site_view view;
+  if (site < sites->corner.count) {
+    laves__key_place(sites->corner.key[site], view.at);
+    view.side = tree->node[laves__octree_locate(tree, view.at[0], view.at[1], view.at[2])].side;
+  } else {
+    const laves__node *n = &tree->node[tree->leaf[site - sites->corner.count]];
+    for (int axis = 0; axis < 3; axis++) view.at[axis] = n->at[axis] + n->side / 2;
+    view.side = n->side;
+  }
+  const int32_t half = view.side / 2;
+  view.colour = (view.at[0] / half + view.at[1] / half + view.at[2] / half) & 3;
+  return view;
+}
+
+size_t laves__bond_end(const laves__sites *sites, const laves__site_view *view, size_t site, int bond) {
+  const int32_t reach = view->colour == 2 ? view->side / 2 : -view->side / 2;
+  int32_t at[3];
+  for (int axis = 0; axis < 3; axis++) at[axis] = view->at[axis] + laves__bond[bond][axis] * reach;
+  if (site >= sites->corner.count) return (size_t)laves__key_find(&sites->corner, laves__key_of(at[0], at[1], at[2]));
+  const int32_t leaf = laves__octree_locate(sites->tree, at[0], at[1], at[2]);
+  return sites->corner.count + (size_t)sites->tree->node[leaf].order;
+}
+
+/* Candidates: centres of leaves with a plateau around, corners of eight such leaves. */
+static laves_result mark_candidates(laves__sites *sites, laves_error *error) {
+  const laves__octree *tree = sites->tree;
+  uint8_t *leaves = laves__alloc_zeroed(tree->context, sites->corner.count, 1);
+  if (!leaves) return laves__fail_memory(tree->context, error);
+  for (size_t i = 0; i < tree->leaf_count; i++) {
+    const laves__node *n = &tree->node[tree->leaf[i]];
+    if (n->plateau < 1) continue;
+    for (int k = 0; k < 8; k++) leaves[laves__key_find(&sites->corner, corner_key(n, k))]++;
+    sites->gone[sites->corner.count + i] = laves__site_look(sites, sites->corner.count + i).colour >= 2;
+  }
+  for (size_t i = 0; i < sites->corner.count; i++) sites->gone[i] = leaves[i] == 8 && laves__site_look(sites, i).colour >= 2;
+  laves__free(tree->context, leaves, sites->corner.count, 1);
+  return LAVES_OK;
+}
+
+static bool is_lonely(const laves__sites *sites, size_t site) {
+  const laves__site_view view = laves__site_look(sites, site);
+  int partners = 0;
+  for (int bond = 0; bond < 4; bond++) partners += sites->gone[laves__bond_end(sites, &view, site, bond)];
+  return partners < BONDS_MIN;
+}
+
+/* Lets lonely sites stay, and looks at the partners of each once more. */
+static laves_result keep_lonely(laves__sites *sites, laves_error *error) {
+  size_t *list = NULL, capacity = 0, count = 0;
+  bool memory = true;
+  for (size_t site = 0; memory && site < sites->site_count; site++) {
+    if (!sites->gone[site]) continue;
+    memory = laves__grow(sites->context, &list, &capacity, count + 1, sizeof *list);
+    if (memory) list[count++] = site;
+  }
+  while (memory && count > 0) {
+    const size_t site = list[--count];
+    if (!sites->gone[site] || !is_lonely(sites, site)) continue;
+    sites->gone[site] = false;
+    const laves__site_view view = laves__site_look(sites, site);
+    memory = laves__grow(sites->context, &list, &capacity, count + 4, sizeof *list);
+    for (int bond = 0; memory && bond < 4; bond++) list[count++] = laves__bond_end(sites, &view, site, bond);
+  }
+  laves__free(sites->context, list, capacity, sizeof *list);
+  return memory ? LAVES_OK : laves__fail_memory(sites->context, error);
+}
+
+laves_result laves__sites_make(const laves__octree *tree, laves__sites *sites, laves_error *error) {
+  memset(sites, 0, sizeof *sites);
+  sites->context = tree->context;
+  sites->tree = tree;
+  laves_result result = list_corners(tree, sites, error);
+  if (result != LAVES_OK) return result;
+  sites->site_count = sites->corner.count + tree->leaf_count;
+  sites->gone = laves__alloc_zeroed(tree->context, sites->site_count, sizeof *sites->gone);
+  if (!sites->gone) return laves__fail_memory(tree->context, error);
+  result = mark_candidates(sites, error);
+  return result == LAVES_OK ? keep_lonely(sites, error) : result;
+}
+
+void laves__sites_free(laves__sites *sites) {
+  if (!sites->context) return;
+  laves__free(sites->context, sites->gone, sites->site_count, sizeof *sites->gone);
+  laves__key_table_free(&sites->corner);
+  memset(sites, 0, sizeof *sites);
+}

@@ -1,0 +1,28 @@
+/* The graded background: tetrahedra whose size follows a field.
+ *
+ *     octree.c     cubes from wishes: refined, limited in gradient, balanced
+ *     decorate.c   where the cubes' lattice becomes C15
+ *     tiles.c      vertices and tetrahedra
+ *     keys.c       places as keys
+ *
+ * Promise: conforming; every dihedral angle between 45 and 120 degrees, whatever the field. There are finitely many shapes:
+ * the tiles of C15 and of BCC; halves and quarters of the latter and half pyramids, where sizes change; and what fills the
+ * place of a site at a wall between the lattices. docs/graded.md tells them all.
+ *
+ * Departure from the study that went before: nothing is triangulated by distances, moved or flipped. */
+#ifndef LAVES_GRADED_GRADED_H
+#define LAVES_GRADED_GRADED_H
+
+#include "background/graph.h"
+#include "graded/octree.h"
+
+/* Fills an empty graph, with its lists. LAVES_ERROR_OPTION when the field asks for too much, LAVES_ERROR_MEMORY,
+ * LAVES_ERROR_CANCELLED. */
+laves_result laves__graded_background(const laves__frame *frame, const laves__demand *demand, laves_context *context,
+                                      laves__graph *graph, laves_error *error);
+
+/* About how many tets and vertices the mesh will have, from the leaves alone. */
+laves_result laves__graded_estimate(const laves__frame *frame, const laves__demand *demand, laves_context *context, double *tets,
+                                    double *vertices, laves_error *error);
+
+#endif
