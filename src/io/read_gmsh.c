@@ -4,7 +4,7 @@
  * order (but for elements in 2.2), so one function reads each section through next_int, next_size and next_double. Nodes
  * have numbers of their own, which are mapped to indices at the end: directly when they are consecutive, else by a sorted
  * table. Tets take their physical group as region and triangles as tag, or the number of their entity where they have none.
- * Where the caller asks for values, the places of all $NodeData are noted and the wanted one is read at the end.
+ * Where the caller asks for values, the places of all views of scalars are noted and the wanted one is read at the end.
  * Source: Gmsh reference manual, "MSH file format" and "MSH file format version 2 (Legacy)". */
 #include <stdlib.h>
 #include <string.h>
@@ -34,11 +34,14 @@ typedef struct table {
   size_t count, capacity;
 } table;
 
-/* A section $NodeData with one number for each node. */
-typedef struct node_data {
-  const char *at; /* the first node's number and value */
+/* Sections with values: one for each node; one for each element; one for each node of each element. */
+typedef enum view_kind { NODE_DATA, ELEMENT_DATA, ELEMENT_NODE_DATA } view_kind;
+
+typedef struct view {
+  view_kind kind;
+  const char *at; /* the first number and value */
   int64_t count;
-} node_data;
+} view;
 
 typedef struct reader {
   laves__mesh_input *input;
@@ -50,9 +53,11 @@ typedef struct reader {
   /* Corners by node number until all nodes are known. */
   int64_t *tet_nodes, *face_nodes;
   size_t tet_node_count, tet_node_capacity, face_node_count, face_node_capacity;
-  node_data *data;
-  laves__word *data_names;
-  size_t data_count, data_capacity, data_name_capacity;
+  /* Where values are wanted: the views of scalars, and number -> index of tets. */
+  view *views;
+  laves__word *view_names;
+  size_t view_count, view_capacity, view_name_capacity;
+  table tets;
 } reader;
 
 /* ---- tables ---- */
@@ -283,12 +288,16 @@ static bool keep_nodes(reader *r, int64_t **kept, size_t *count, size_t *capacit
   return true;
 }
 
-static laves_result add_element(reader *r, int64_t type, int32_t group, const int64_t *nodes, laves_error *error) {
+static laves_result add_element(reader *r, int64_t number, int64_t type, int32_t group, const int64_t *nodes,
+                                laves_error *error) {
   const int32_t later[4] = {0};
   laves__mesh_input *input = r->input;
   bool enough = true;
   if (is_tet(type)) {
-    enough = laves__mesh_input_add_tet(input, later, group) &&
+    if (input->values.wanted && input->tet_count == INT32_MAX)
+      return laves__mesh_input_fail(input, error, "there are more than 2147483647 tetrahedra");
+    enough = (!input->values.wanted || table_add(r, &r->tets, number, (int32_t)input->tet_count)) &&
+             laves__mesh_input_add_tet(input, later, group) &&
              keep_nodes(r, &r->tet_nodes, &r->tet_node_count, &r->tet_node_capacity, nodes, 4);
     input->higher_order |= type != 4;
     if (input->tet_count % 65536 == 0 && laves__mesh_input_cancelled(input, r->scan.at)) return laves__fail_cancelled(error);
@@ -305,7 +314,7 @@ static laves_result check_type(reader *r, int64_t type, laves_error *error) {
 }
 
 /* In version 2 the tags of an element are its physical group and its entity, then partitions. */
-static laves_result read_element2(reader *r, int64_t type, int64_t tag_count, laves_error *error) {
+static laves_result read_element2(reader *r, int64_t number, int64_t type, int64_t tag_count, laves_error *error) {
   int64_t tags[2] = {0, 0}, nodes[NODES_MAX], further;
   for (int64_t i = 0; i < tag_count; i++)
     if (!next_int(r, i < 2 ? &tags[i] : &further)) return fail_short(r, error, "a tag of an element");
@@ -314,7 +323,7 @@ static laves_result read_element2(reader *r, int64_t type, int64_t tag_count, la
   const int64_t group = tags[0] ? tags[0] : tags[1];
   if (group < INT32_MIN || group > INT32_MAX)
     return laves__mesh_input_fail(r->input, error, "physical group %lld is too large", (long long)group);
-  return add_element(r, type, (int32_t)group, nodes, error);
+  return add_element(r, number, type, (int32_t)group, nodes, error);
 }
 
 /* Text gives type and number of tags with each element, binary once for a run of elements. */
@@ -332,7 +341,7 @@ static laves_result read_elements2(reader *r, laves_error *error) {
     result = check_type(r, type, error);
     for (int64_t i = 0; i < run && result == LAVES_OK; i++) {
       if (r->binary && !next_int(r, &number)) return fail_short(r, error, "an element");
-      result = read_element2(r, type, tag_count, error);
+      result = read_element2(r, number, type, tag_count, error);
     }
     count -= run;
   }
@@ -355,7 +364,7 @@ static laves_result read_element_block(reader *r, laves_error *error) {
     if (!next_size(r, &number)) return fail_short(r, error, "an element");
     for (int j = 0; j < type_nodes[type]; j++)
       if (!next_size(r, &nodes[j])) return fail_short(r, error, "a node of an element");
-    result = add_element(r, type, (int32_t)group, nodes, error);
+    result = add_element(r, number, type, (int32_t)group, nodes, error);
   }
   return result;
 }
@@ -386,9 +395,9 @@ static laves_result read_view_name(reader *r, laves__word *name, laves_error *er
   return result;
 }
 
-/* The head of $NodeData is text in binary files too: texts, numbers, and integers: time step, components, nodes. */
-static laves_result note_node_data(reader *r, laves_error *error) {
-  enum { STEP, COMPONENTS, NODES, KEPT };
+/* The head of such a section is text in binary files too: texts, numbers, and integers: time step, components, items. */
+static laves_result note_view(reader *r, view_kind kind, laves_error *error) {
+  enum { STEP, COMPONENTS, ITEMS, KEPT };
   laves_context *context = r->input->context;
   laves__word name = {"", 0};
   int64_t count, integers[KEPT] = {0}, integer = 0;
@@ -407,11 +416,12 @@ static laves_result note_node_data(reader *r, laves_error *error) {
   }
   if (result != LAVES_OK || integers[COMPONENTS] != 1) return result;
   laves__scan_next_line(&r->scan);
-  if (!laves__grow(context, &r->data, &r->data_capacity, r->data_count + 1, sizeof *r->data) ||
-      !laves__grow(context, &r->data_names, &r->data_name_capacity, r->data_count + 1, sizeof *r->data_names))
+  const size_t needed = r->view_count + 1;
+  if (!laves__grow(context, &r->views, &r->view_capacity, needed, sizeof *r->views) ||
+      !laves__grow(context, &r->view_names, &r->view_name_capacity, needed, sizeof *r->view_names))
     return laves__fail_memory(context, error);
-  r->data[r->data_count] = (node_data){r->scan.at, integers[NODES]};
-  r->data_names[r->data_count++] = name;
+  r->views[r->view_count] = (view){kind, r->scan.at, integers[ITEMS]};
+  r->view_names[r->view_count++] = name;
   return LAVES_OK;
 }
 
@@ -439,7 +449,10 @@ static laves_result read_section(reader *r, laves__word name, laves_error *error
   if (laves__word_is(name, "Entities")) return r->version == 4 ? read_entities(r, error) : LAVES_OK;
   if (laves__word_is(name, "Nodes")) return r->version == 4 ? read_nodes4(r, error) : read_nodes2(r, error);
   if (laves__word_is(name, "Elements")) return r->version == 4 ? read_elements4(r, error) : read_elements2(r, error);
-  if (laves__word_is(name, "NodeData") && r->input->values.wanted) return note_node_data(r, error);
+  if (!r->input->values.wanted) return LAVES_OK;
+  if (laves__word_is(name, "NodeData")) return note_view(r, NODE_DATA, error);
+  if (laves__word_is(name, "ElementData")) return note_view(r, ELEMENT_DATA, error);
+  if (laves__word_is(name, "ElementNodeData")) return note_view(r, ELEMENT_NODE_DATA, error);
   return LAVES_OK;
 }
 
@@ -465,29 +478,76 @@ static laves_result resolve_all(reader *r, laves_error *error) {
   return result;
 }
 
-/* Reads the wanted view; of several time steps of one name the first. */
-static laves_result read_values(reader *r, laves_error *error) {
+/* Gives each tet points of its own, as its values need not agree with those of its neighbours; triangles are dropped. */
+static laves_result part_tets(reader *r, laves_error *error) {
   laves__mesh_input *input = r->input;
-  if (!input->values.wanted) return LAVES_OK;
-  size_t chosen = 0;
-  if (r->data_count == 0)
-    return laves__mesh_input_fail(input, error, "it has no section $NodeData with one number for each node");
-  const laves_result result = laves__mesh_input_choose_array(input, r->data_names, r->data_count, &chosen, error);
-  if (result != LAVES_OK) return result;
-  for (size_t i = 0; i < input->point_count; i++)
-    if (!laves__mesh_input_add_value(input, NAN)) return laves__fail_memory(input->context, error);
-  r->scan.at = r->data[chosen].at;
-  for (int64_t i = 0; i < r->data[chosen].count; i++) {
-    int64_t number;
+  const size_t count = 4 * input->tet_count;
+  if (count > INT32_MAX) return laves__mesh_input_fail(input, error, "there are more than 536870911 tetrahedra");
+  laves__vec3 *points = laves__alloc(input->context, count, sizeof *points);
+  if (!points) return laves__fail_memory(input->context, error);
+  for (size_t i = 0; i < count; i++) {
+    int32_t *corner = &input->tets[i / 4][i % 4];
+    points[i] = input->points[*corner];
+    *corner = (int32_t)i;
+  }
+  laves__free(input->context, input->points, input->point_capacity, sizeof *input->points);
+  input->points = points;
+  input->point_count = input->point_capacity = count;
+  input->face_count = 0;
+  return LAVES_OK;
+}
+
+static laves_result read_node_value(reader *r, laves_error *error) {
+  int64_t number;
+  double value;
+  if (!next_int(r, &number) || !next_double(r, &value)) return fail_short(r, error, "a node's number and value");
+  const numbered *node = table_find(&r->nodes, number);
+  if (!node)
+    return laves__mesh_input_fail(r->input, error, "a value is for node %lld, which the file does not have", (long long)number);
+  r->input->values.items[node->value] = value;
+  return LAVES_OK;
+}
+
+/* One value, or with a count in front one for each node, the corners first; elements that are no tets are passed over. */
+static laves_result read_element_values(reader *r, view_kind kind, laves_error *error) {
+  int64_t number, count = 1;
+  if (!next_int(r, &number)) return fail_short(r, error, "an element's number and values");
+  if (kind == ELEMENT_NODE_DATA && (!next_int(r, &count) || count < 0))
+    return fail_short(r, error, "an element's number of nodes");
+  const numbered *tet = table_find(&r->tets, number);
+  const int64_t kept = kind == ELEMENT_DATA ? 1 : 4;
+  for (int64_t i = 0; i < count; i++) {
     double value;
-    if (!next_int(r, &number) || !next_double(r, &value)) return fail_short(r, error, "a node's number and value");
-    const numbered *node = table_find(&r->nodes, number);
-    if (!node)
-      return laves__mesh_input_fail(input, error, "a value is for node %lld, which the file does not have", (long long)number);
-    input->values.items[node->value] = value;
-    if (i % 65536 == 65535 && laves__mesh_input_cancelled(input, r->scan.at)) return laves__fail_cancelled(error);
+    if (!next_double(r, &value)) return fail_short(r, error, "a value of an element");
+    if (tet && i < kept) r->input->values.items[tet->value * kept + i] = value;
   }
   return LAVES_OK;
+}
+
+static laves_result read_view(reader *r, const view *v, laves_error *error) {
+  laves__mesh_input *input = r->input;
+  laves_result result = v->kind == ELEMENT_NODE_DATA ? part_tets(r, error) : LAVES_OK;
+  input->values.per_tet = v->kind == ELEMENT_DATA;
+  const size_t needed = input->values.per_tet ? input->tet_count : input->point_count;
+  for (size_t i = 0; i < needed && result == LAVES_OK; i++)
+    if (!laves__mesh_input_add_value(input, NAN)) result = laves__fail_memory(input->context, error);
+  table_sort(&r->tets);
+  r->scan.at = v->at;
+  for (int64_t i = 0; i < v->count && result == LAVES_OK; i++) {
+    result = v->kind == NODE_DATA ? read_node_value(r, error) : read_element_values(r, v->kind, error);
+    if (i % 65536 == 65535 && laves__mesh_input_cancelled(input, r->scan.at)) return laves__fail_cancelled(error);
+  }
+  return result;
+}
+
+/* Reads the wanted view; of several time steps of one name the first. */
+static laves_result read_values(reader *r, laves_error *error) {
+  if (!r->input->values.wanted) return LAVES_OK;
+  size_t chosen = 0;
+  if (r->view_count == 0)
+    return laves__mesh_input_fail(r->input, error, "it has no view ($NodeData) with one number for each node or element");
+  const laves_result result = laves__mesh_input_choose_array(r->input, r->view_names, r->view_count, &chosen, error);
+  return result == LAVES_OK ? read_view(r, &r->views[chosen], error) : result;
 }
 
 laves_result laves__read_gmsh(laves__mesh_input *input, laves_error *error) {
@@ -512,7 +572,8 @@ laves_result laves__read_gmsh(laves__mesh_input *input, laves_error *error) {
   for (int d = 0; d < 2; d++) laves__free(context, r.entities[d].items, r.entities[d].capacity, sizeof *r.entities[d].items);
   laves__free(context, r.tet_nodes, r.tet_node_capacity, sizeof *r.tet_nodes);
   laves__free(context, r.face_nodes, r.face_node_capacity, sizeof *r.face_nodes);
-  laves__free(context, r.data, r.data_capacity, sizeof *r.data);
-  laves__free(context, r.data_names, r.data_name_capacity, sizeof *r.data_names);
+  laves__free(context, r.views, r.view_capacity, sizeof *r.views);
+  laves__free(context, r.view_names, r.view_name_capacity, sizeof *r.view_names);
+  laves__free(context, r.tets.items, r.tets.capacity, sizeof *r.tets.items);
   return result;
 }

@@ -77,7 +77,7 @@ typedef struct reader {
   encoding encoding;
   bool has_endian, big_endian;
   size_t line_skip;
-  int64_t byte_skip; /* -1: the data are the last bytes of the file */
+  int64_t byte_skip;                             /* -1: the data are the last bytes of the file */
   double spacings[AXES], mins[AXES], maxs[AXES]; /* NAN: not given */
   bool cells[AXES];                              /* samples stand in the middle of cells, not at nodes */
   laves__word data_file;                         /* empty: the data follow the header */
@@ -161,7 +161,8 @@ static laves_result read_per_axis(reader *r, double values[AXES], laves_error *e
 static laves_result read_centerings(reader *r, laves_error *error) {
   laves__word word;
   for (int a = 0; a < AXES; a++) {
-    if (!laves__scan_word(&r->scan, &word)) return laves__scan_fail_expected(&r->scan, error, "node or cell for each of three axes");
+    if (!laves__scan_word(&r->scan, &word))
+      return laves__scan_fail_expected(&r->scan, error, "node or cell for each of three axes");
     r->cells[a] = laves__word_is(word, "cell");
   }
   return LAVES_OK;
@@ -213,8 +214,9 @@ static laves_result read_byte_skip(reader *r, laves_error *error) {
 static laves_result read_data_file(reader *r, laves_error *error) {
   r->data_file = laves__scan_rest(&r->scan);
   const laves__word name = r->data_file;
-  const bool plain = name.length > 0 && name.length < NAME_MAX && !memchr(name.at, '/', name.length) && !memchr(name.at, '\\', name.length) &&
-                     !memchr(name.at, '%', name.length) && !memchr(name.at, 0, name.length) && !laves__word_is(name, "LIST") &&
+  const bool plain = name.length > 0 && name.length < NAME_MAX && !memchr(name.at, '/', name.length) &&
+                     !memchr(name.at, '\\', name.length) && !memchr(name.at, '%', name.length) &&
+                     !memchr(name.at, 0, name.length) && !laves__word_is(name, "LIST") &&
                      !(name.length > 5 && memcmp(name.at, "LIST ", 5) == 0);
   if (plain) return LAVES_OK;
   return laves__scan_fail(&r->scan, error, "the data must be in one file in the same folder, given by its name alone");
@@ -231,13 +233,16 @@ static const struct {
   const char *name;
   field_fn *read;
 } fields[] = {
-    {"dimension", read_dimension},    {"type", read_type},        {"encoding", read_encoding},
-    {"endian", read_endian},          {"sizes", read_sizes},      {"spacings", read_spacings},
-    {"axis mins", read_mins},         {"axismins", read_mins},    {"axis maxs", read_maxs},
-    {"axismaxs", read_maxs},          {"centers", read_centerings}, {"centerings", read_centerings},
-    {"space origin", read_origin},    {"space directions", read_directions}, {"line skip", read_line_skip},
-    {"lineskip", read_line_skip},     {"byte skip", read_byte_skip}, {"byteskip", read_byte_skip},
-    {"data file", read_data_file},    {"datafile", read_data_file},
+    {"dimension", read_dimension}, {"type", read_type},
+    {"encoding", read_encoding},   {"endian", read_endian},
+    {"sizes", read_sizes},         {"spacings", read_spacings},
+    {"axis mins", read_mins},      {"axismins", read_mins},
+    {"axis maxs", read_maxs},      {"axismaxs", read_maxs},
+    {"centers", read_centerings},  {"centerings", read_centerings},
+    {"space origin", read_origin}, {"space directions", read_directions},
+    {"line skip", read_line_skip}, {"lineskip", read_line_skip},
+    {"byte skip", read_byte_skip}, {"byteskip", read_byte_skip},
+    {"data file", read_data_file}, {"datafile", read_data_file},
 };
 
 /* One line: a field, a key with its value (":="), or a comment. */
@@ -412,7 +417,8 @@ static laves_result read_text(reader *r, laves_error *error) {
   if (r->data_file.length == 0) scan.begin = r->image->begin; /* so that lines are counted from the top of the file */
   for (size_t i = 0; i < r->image->sample_count; i++) {
     double value;
-    if (!laves__scan_space(&scan) || !laves__scan_double(&scan, &value)) return laves__scan_fail_expected(&scan, error, "a sample");
+    if (!laves__scan_space(&scan) || !laves__scan_double(&scan, &value))
+      return laves__scan_fail_expected(&scan, error, "a sample");
     put_sample(r->image, i, value);
     if (i % SAMPLES_PER_QUESTION == SAMPLES_PER_QUESTION - 1 && cancelled(r, i)) return laves__fail_cancelled(error);
   }
@@ -438,7 +444,8 @@ static laves_result inflate_bytes(reader *r, z_stream *z, char *out, size_t coun
     if (out) out += got;
     count -= got;
     if (status == Z_MEM_ERROR) return laves__fail_memory(r->image->context, error);
-    const bool more = status == Z_STREAM_END && count > 0 && inflateReset(z) == Z_OK && (z->avail_in > 0 || r->data < r->data_end);
+    const bool more =
+        status == Z_STREAM_END && count > 0 && inflateReset(z) == Z_OK && (z->avail_in > 0 || r->data < r->data_end);
     if (status != Z_OK && !more && count > 0) return fail(r, error, "the compressed data are shorter than announced or damaged");
     if (laves__cancelled(r->image->context, "read", 0)) return laves__fail_cancelled(error);
   }
@@ -480,7 +487,8 @@ static laves_result read_detached(reader *r, laves_error *error) {
   const int folder = slash ? (int)(slash + 1 - r->image->name) : 0;
   char path[PATH_MAX], *bytes;
   size_t length;
-  if (snprintf(path, sizeof path, "%.*s%.*s", folder, r->image->name, (int)r->data_file.length, r->data_file.at) >= (int)sizeof path)
+  if (snprintf(path, sizeof path, "%.*s%.*s", folder, r->image->name, (int)r->data_file.length, r->data_file.at) >=
+      (int)sizeof path)
     return fail(r, error, "the name of the data file is too long");
   laves_result result = laves__file_read(context, path, &bytes, &length, error);
   if (result != LAVES_OK) return result;

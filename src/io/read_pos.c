@@ -86,8 +86,7 @@ static laves_result take_numbers(reader *r, const char brackets[2], size_t wante
 
 static laves_result add_corners(reader *r, size_t corners, const double *coordinates, const double *values, laves_error *error) {
   laves__mesh_input *input = r->input;
-  if (input->point_count > INT32_MAX - corners)
-    return laves__mesh_input_fail(input, error, "it has more than 2147483647 points");
+  if (input->point_count > INT32_MAX - corners) return laves__mesh_input_fail(input, error, "it has more than 2147483647 points");
   const int32_t first = (int32_t)input->point_count, tet[4] = {first, first + 1, first + 2, first + 3};
   bool enough = true;
   for (size_t i = 0; i < corners && enough; i++)

@@ -24,7 +24,8 @@ static laves_result check_value(const laves__mesh_input *input, size_t i, const 
   const double value = input->values.items[i];
   if (value > 0 && isfinite(value)) return LAVES_OK;
   if (isnan(value))
-    return laves__mesh_input_fail(input, error, "%s %zu (counted from 1) has no size, or one that is not a number", what, item + 1);
+    return laves__mesh_input_fail(input, error, "%s %zu (counted from 1) has no size, or one that is not a number", what,
+                                  item + 1);
   return laves__mesh_input_fail(input, error, "%s %zu (counted from 1) has the size %g; sizes must be greater than 0 and finite",
                                 what, item + 1, value);
 }
@@ -72,7 +73,7 @@ static laves_result read_mesh(laves__mesh_input *input, laves__background_sizes 
   read_fn *read = find_reader(input);
   if (!read)
     return laves__mesh_input_fail(input, error,
-                                  "it has no format of size files that is known (NRRD; VTU; Gmsh: .msh with $NodeData, .pos with View)");
+                                  "it has no format of size files that is known (NRRD; VTU; Gmsh: .msh and .pos with a view)");
   laves_result result = read(input, error);
   if (result == LAVES_OK && (input->tet_count > 0 || read != laves__read_pos)) result = laves__mesh_input_check(input, error);
   if (result == LAVES_OK) result = check_places(input, error);
@@ -97,6 +98,25 @@ static laves_result read_image(laves__image_input *image, const char *array_name
 
 /* ---- the interface ---- */
 
+laves_result laves__background_parse(laves_context *context, const char *name, const char *bytes, size_t length,
+                                     const char *array_name, laves__background_sizes **sizes, laves_error *error) {
+  *sizes = NULL;
+  laves__mesh_input mesh = {
+      .context = context, .name = name, .begin = bytes, .end = bytes + length, .values = {.wanted = true, .array = array_name}};
+  laves__image_input image = {.context = context, .name = name, .begin = bytes, .end = bytes + length};
+  laves__background_sizes *made = laves__alloc_zeroed(context, 1, sizeof *made);
+  if (!made) return laves__fail_memory(context, error);
+  made->context = context;
+  const bool is_nrrd = length >= 4 && memcmp(bytes, "NRRD", 4) == 0;
+  const laves_result result = is_nrrd ? read_image(&image, array_name, made, error) : read_mesh(&mesh, made, error);
+  laves__mesh_input_free(&mesh);
+  if (result == LAVES_OK)
+    *sizes = made;
+  else
+    laves__background_free(made);
+  return result;
+}
+
 laves_result laves__background_load(laves_context *context, const char *path, const char *array_name,
                                     laves__background_sizes **sizes, laves_error *error) {
   char *bytes;
@@ -104,28 +124,13 @@ laves_result laves__background_load(laves_context *context, const char *path, co
   *sizes = NULL;
   laves_result result = laves__file_read(context, path, &bytes, &length, error);
   if (result != LAVES_OK) return result;
-  laves__mesh_input mesh = {
-      .context = context, .name = path, .begin = bytes, .end = bytes + length, .values = {.wanted = true, .array = array_name}};
-  laves__image_input image = {.context = context, .name = path, .begin = bytes, .end = bytes + length};
-  laves__background_sizes *made = laves__alloc_zeroed(context, 1, sizeof *made);
-  if (!made) {
-    result = laves__fail_memory(context, error);
-    goto done;
-  }
-  made->context = context;
-  const bool is_nrrd = length >= 4 && memcmp(bytes, "NRRD", 4) == 0;
-  result = is_nrrd ? read_image(&image, array_name, made, error) : read_mesh(&mesh, made, error);
-  if (result == LAVES_OK)
-    *sizes = made;
-  else
-    laves__background_free(made);
-done:
-  laves__mesh_input_free(&mesh);
+  result = laves__background_parse(context, path, bytes, length, array_name, sizes, error);
   laves__free(context, bytes, length + 1, 1);
   return result;
 }
 
-void laves__background_evaluate(const laves__background_sizes *background, size_t count, const laves__vec3 *points, double *sizes) {
+void laves__background_evaluate(const laves__background_sizes *background, size_t count, const laves__vec3 *points,
+                                double *sizes) {
   for (size_t i = 0; i < count; i++)
     sizes[i] = background->is_image ? laves__background_image_at(&background->image, points[i])
                                     : laves__background_tree_at(&background->tree, points[i]);

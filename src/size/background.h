@@ -20,10 +20,15 @@ typedef struct laves__background_sizes laves__background_sizes;
 laves_result laves__background_load(laves_context *context, const char *path, const char *array_name,
                                     laves__background_sizes **sizes, laves_error *error);
 
+/* The same from the bytes of a file; `name` is its path, for messages and for the data that an NRRD header keeps elsewhere. */
+laves_result laves__background_parse(laves_context *context, const char *name, const char *bytes, size_t length,
+                                     const char *array_name, laves__background_sizes **sizes, laves_error *error);
+
 /* Sizes at points in the coordinates of the file. Linear within the tet, constant where the file has one number for each tet,
  * trilinear between the samples of an image, the number of the nearest point where the file has points alone; outside: of
  * the nearest place of the background. Callable from many threads at once; about 1 us a point, more for points far outside. */
-void laves__background_evaluate(const laves__background_sizes *background, size_t count, const laves__vec3 *points, double *sizes);
+void laves__background_evaluate(const laves__background_sizes *background, size_t count, const laves__vec3 *points,
+                                double *sizes);
 
 /* NULL is allowed. */
 void laves__background_free(laves__background_sizes *background);

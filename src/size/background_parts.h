@@ -29,8 +29,8 @@ typedef struct laves__background_tree {
   laves__vec3 *points;
   double *values; /* one for each point, or for each item */
   bool per_item;
-  int corners;      /* of an item: 4 for tets, 1 for points */
-  uint32_t *items;  /* [item_count][corners], in the order of the leaves */
+  int corners;     /* of an item: 4 for tets, 1 for points */
+  uint32_t *items; /* [item_count][corners], in the order of the leaves */
   size_t point_count, value_count, item_count;
   laves__background_node *nodes; /* the first is the root */
   size_t node_count, node_capacity;

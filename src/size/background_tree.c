@@ -73,7 +73,8 @@ static laves__box3 range_box(const laves__background_tree *tree, const range *r)
 }
 
 static bool add_nodes(laves__background_tree *tree, size_t count) {
-  if (!laves__grow(tree->context, &tree->nodes, &tree->node_capacity, tree->node_count + count, sizeof *tree->nodes)) return false;
+  if (!laves__grow(tree->context, &tree->nodes, &tree->node_capacity, tree->node_count + count, sizeof *tree->nodes))
+    return false;
   tree->node_count += count;
   return true;
 }
@@ -182,8 +183,8 @@ static blend nearest_in_tet(const laves__vec3 corners[4], laves__vec3 p) {
   const laves__vec3 u = v3_sub(corners[1], corners[0]), v = v3_sub(corners[2], corners[0]), w = v3_sub(corners[3], corners[0]);
   const laves__vec3 q = v3_sub(p, corners[0]);
   const double volume = v3_dot(u, v3_cross(v, w));
-  blend inside = {.weights = {0, v3_dot(q, v3_cross(v, w)) / volume, v3_dot(q, v3_cross(w, u)) / volume,
-                              v3_dot(q, v3_cross(u, v)) / volume}};
+  blend inside = {
+      .weights = {0, v3_dot(q, v3_cross(v, w)) / volume, v3_dot(q, v3_cross(w, u)) / volume, v3_dot(q, v3_cross(u, v)) / volume}};
   inside.weights[0] = 1 - inside.weights[1] - inside.weights[2] - inside.weights[3];
   const double *s = inside.weights;
   if (s[0] >= 0 && s[1] >= 0 && s[2] >= 0 && s[3] >= 0) return inside;
@@ -203,7 +204,9 @@ static blend nearest_in_item(const laves__background_tree *tree, size_t item, la
 
 /* ---- searching ---- */
 
-static double box_distance2(const laves__box3 *box, laves__vec3 p) { return v3_norm2(v3_sub(p, v3_max(box->lower, v3_min(p, box->upper)))); }
+static double box_distance2(const laves__box3 *box, laves__vec3 p) {
+  return v3_norm2(v3_sub(p, v3_max(box->lower, v3_min(p, box->upper))));
+}
 
 typedef struct found {
   size_t item;
