@@ -1,6 +1,6 @@
 # Other programs read every format that laves writes and count and measure what they find, and laves reads what they write.
 # Skipped, loudly, where a program is missing.
-foreach(program write_formats count_mesh)
+foreach(program write_formats count_mesh size_at)
   add_executable(${program} referee/${program}.c)
   target_link_libraries(${program} PRIVATE laves-fixtures)
 endforeach()
@@ -11,6 +11,8 @@ foreach(referee meshio gmsh tetgen)
     COMMAND ${CMAKE_CURRENT_LIST_DIR}/written_by_${referee} $<TARGET_FILE:count_mesh>)
   set_tests_properties(referee/read_with_${referee} referee/written_by_${referee} PROPERTIES LABELS referee SKIP_RETURN_CODE 77)
 endforeach()
+add_test(NAME referee/sizes_by_gmsh COMMAND ${CMAKE_CURRENT_LIST_DIR}/sizes_by_gmsh $<TARGET_FILE:size_at>)
+set_tests_properties(referee/sizes_by_gmsh PROPERTIES LABELS referee SKIP_RETURN_CODE 77)
 # Exact arithmetic in another language has the second word on certificates, and refuses forged ones.
 if(TARGET laves-program)
   add_test(NAME referee/certificates COMMAND ${CMAKE_CURRENT_LIST_DIR}/certificates $<TARGET_FILE:laves-program>)
