@@ -56,6 +56,9 @@ typedef struct laves__oracle {
   size_t flat_face_count;
   void (*flat_face)(const void *self, size_t face, laves__vec3 corners[3]);
 
+  /* Where the surface is made of triangles, whether or not all of them bound the solid: they; see surface.h. Else NULL. */
+  const struct laves__surface *surface;
+
   /* Up to `capacity` thin places, thinnest first; NULL: not available. */
   size_t (*thin_places)(const void *self, laves_thin_place *places, size_t capacity);
 

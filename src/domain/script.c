@@ -178,6 +178,7 @@ typedef struct job {
   const char *text;
   size_t length;
   bool is_expression;
+  bool is_size; /* the chunk leaves a size of elements, not a solid */
 } job;
 
 typedef struct text_reader {
@@ -198,11 +199,30 @@ static const char *read_part(lua_State *L, void *user, size_t *length) {
   return reader->part[reader->next++];
 }
 
+/* What the chunk returned goes into the model. */
+static void take_solid(lua_State *L, laves__script *script) {
+  if (!laves__script_value(L, -1))
+    luaL_error(L, "%s: the script yields %s; it must return a solid, or a field that is negative inside", script->name,
+               laves__script_type(L, -1));
+  script->model->shape = laves__script_solid(L, -1, "return");
+}
+
+static void take_size(lua_State *L, laves__script *script) {
+  const laves__value *value = laves__script_value(L, -1);
+  if (value ? value->kind == LAVES__SOLID : lua_type(L, -1) != LUA_TNUMBER)
+    luaL_error(L, "%s: the script yields %s; a size must be a number or a field of x, y, z and d", script->name,
+               laves__script_type(L, -1));
+  const laves__node size = laves__script_field(L, -1, "return");
+  if (size == LAVES__NO_NODE) luaL_error(L, "out of memory");
+  script->model->shape = laves__shape_of_node(size);
+}
+
 /* Runs within lua_pcall; upvalue-free, the job is a light userdata. Leaves the solid in the model. */
 static int run(lua_State *L) {
   const job *work = lua_touserdata(L, 1);
   laves__script *script = laves__script_of(L);
   push_globals(L);
+  if (work->is_size) laves__script_add_depth(L, 0);
   text_reader reader = {{"return ", work->text}, {work->is_expression ? 7 : 0, work->length}, 0};
   lua_pushfstring(L, "=%s", script->name);
   if (lua_load(L, read_part, &reader, lua_tostring(L, -1), "t") != LUA_OK) return lua_error(L);
@@ -211,10 +231,10 @@ static int run(lua_State *L) {
   lua_sethook(L, look, LUA_MASKCOUNT, STEPS_PER_LOOK);
   lua_call(L, 0, 1);
   lua_sethook(L, NULL, 0, 0);
-  if (!laves__script_value(L, -1))
-    return luaL_error(L, "%s: the script yields %s; it must return a solid, or a field that is negative inside", script->name,
-                      laves__script_type(L, -1));
-  script->model->shape = laves__script_solid(L, -1, "return");
+  if (work->is_size)
+    take_size(L, script);
+  else
+    take_solid(L, script);
   return 0;
 }
 
@@ -233,23 +253,40 @@ static laves_result explain(laves__script *script, lua_State *L, int status, lav
   return laves__fail(error, LAVES_ERROR_INPUT, "%s: %s", script->name, text);
 }
 
-laves_result laves__script_run(laves_context *context, const char *text, size_t length, bool is_expression, const char *name,
-                               const char *folder, laves__model *model, laves_error *error) {
-  *model = (laves__model){0};
-  laves__expression_init(&model->expression, context);
+/* The model is set up, and holds the leaf of d where there is one. */
+static laves_result run_job(laves_context *context, job *work, const char *name, const char *folder, laves__model *model,
+                            laves_error *error) {
   laves__script script = {.context = context, .model = model, .name = name, .folder = folder, .started = laves__wall_seconds()};
   lua_State *L = lua_newstate(allocate, &script);
   if (!L) return laves__fail_memory(context, error);
   script.lua = L;
   *(laves__script **)lua_getextraspace(L) = &script;
-  job work = {text, length, is_expression};
   lua_pushcfunction(L, run);
-  lua_pushlightuserdata(L, &work);
+  lua_pushlightuserdata(L, work);
   const int status = lua_pcall(L, 1, 0, 0);
   const laves_result result = status == LUA_OK ? LAVES_OK : explain(&script, L, status, error);
   script.lua = NULL;
   lua_close(L);
   return result;
+}
+
+laves_result laves__script_run(laves_context *context, const char *text, size_t length, bool is_expression, const char *name,
+                               const char *folder, laves__model *model, laves_error *error) {
+  *model = (laves__model){0};
+  laves__expression_init(&model->expression, context);
+  job work = {text, length, is_expression, false};
+  return run_job(context, &work, name, folder, model, error);
+}
+
+laves_result laves__script_run_size(laves_context *context, const char *text, size_t length, bool is_expression, const char *name,
+                                    const char *folder, laves__model *model, laves_error *error) {
+  *model = (laves__model){0};
+  laves__expression_init(&model->expression, context);
+  if (!laves__grow(context, &model->leaves, &model->leaf_capacity, 1, sizeof *model->leaves))
+    return laves__fail_memory(context, error);
+  model->leaves[model->leaf_count++] = NULL;
+  job work = {text, length, is_expression, true};
+  return run_job(context, &work, name, folder, model, error);
 }
 
 void laves__model_free(laves_context *context, laves__model *model) {

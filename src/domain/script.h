@@ -20,6 +20,11 @@ laves_result laves__script_run(laves_context *context, const char *text, size_t 
                                const char *folder, laves__model *model, laves_error *error);
 void laves__model_free(laves_context *context, laves__model *model);
 
+/* The same for a size of elements: the chunk returns a number or a field of x, y, z and `d`, the depth below the surface.
+ * model->shape.node is that field; leaf 0 (model->leaves[0] is NULL) stands for d and is the caller's to provide. */
+laves_result laves__script_run_size(laves_context *context, const char *text, size_t length, bool is_expression, const char *name,
+                                    const char *folder, laves__model *model, laves_error *error);
+
 /* ---- between script.c, which runs, and script_*.c, which define the vocabulary ---- */
 
 typedef struct laves__script {
@@ -81,5 +86,10 @@ double laves__script_number(struct lua_State *L, const char *function, const lav
 void laves__script_add_fields(struct lua_State *L);     /* script_field.c: x, y, z, arithmetic, functions */
 void laves__script_add_primitives(struct lua_State *L); /* script_primitive.c */
 void laves__script_add_solids(struct lua_State *L);     /* script_solid.c: combining and changing; methods of solids */
+/* Adds d, the value of leaf `leaf` (script_field.c). */
+void laves__script_add_depth(struct lua_State *L, uint32_t leaf);
+
+/* The item as a number or a field; raises an error for anything else. */
+laves__node laves__script_field(struct lua_State *L, int index, const char *function);
 
 #endif

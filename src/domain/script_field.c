@@ -13,8 +13,7 @@ static laves__expression *store(lua_State *L) { return &laves__script_of(L)->mod
 
 static int push_field(lua_State *L, laves__node node) { return laves__script_push(L, LAVES__FIELD, laves__shape_of_node(node)); }
 
-/* A number or a field as a node; for anything else an error. */
-static laves__node node_at(lua_State *L, int index, const char *function) {
+laves__node laves__script_field(lua_State *L, int index, const char *function) {
   const laves__value *value = laves__script_value(L, index);
   if (value && value->kind == LAVES__FIELD) return value->shape.node;
   if (value)
@@ -61,13 +60,13 @@ static int operate(lua_State *L) {
                       "'%s' between %s and %s: use offset() or scale() to change a solid by a number, solid(f) to make a field a "
                       "solid, field(s) to compute with a solid's values",
                       o->sign, laves__script_type(L, 1), laves__script_type(L, 2));
-  const laves__node a = node_at(L, 1, o->sign), b = node_at(L, 2, o->sign);
+  const laves__node a = laves__script_field(L, 1, o->sign), b = laves__script_field(L, 2, o->sign);
   return push_field(L, laves__node_make(store(L), (laves__op)o->arithmetic, a, b, 0));
 }
 
 static int negate(lua_State *L) {
   if (is_solid(L, 1)) return luaL_error(L, "'-' before a solid: write ~solid for its outside, or a - b for a difference");
-  return push_field(L, laves__node_make(store(L), LAVES__OP_NEGATE, node_at(L, 1, "-"), 0, 0));
+  return push_field(L, laves__node_make(store(L), LAVES__OP_NEGATE, laves__script_field(L, 1, "-"), 0, 0));
 }
 
 static int complement(lua_State *L) {
@@ -134,17 +133,18 @@ static int call(lua_State *L) {
   const bool field = any_value(L);
   laves__node node[3] = {0, 0, 0};
   if (any_number_of) {
-    node[0] = node_at(L, 1, f->name);
-    for (int i = 2; i <= given; i++) node[0] = laves__node_make(store(L), f->op, node[0], node_at(L, i, f->name), 0);
+    node[0] = laves__script_field(L, 1, f->name);
+    for (int i = 2; i <= given; i++) node[0] = laves__node_make(store(L), f->op, node[0], laves__script_field(L, i, f->name), 0);
     return finish(L, node[0], field);
   }
-  for (int i = 0; i < operands; i++) node[i] = i < given ? node_at(L, i + 1, f->name) : laves__node_constant(store(L), 0);
+  for (int i = 0; i < operands; i++)
+    node[i] = i < given ? laves__script_field(L, i + 1, f->name) : laves__node_constant(store(L), 0);
   return finish(L, laves__node_make(store(L), f->op, node[0], node[1], node[2]), field);
 }
 
 static int ceil_of(lua_State *L) {
   laves__expression *e = store(L);
-  const laves__node down = laves__node_make(e, LAVES__OP_NEGATE, node_at(L, 1, "ceil"), 0, 0);
+  const laves__node down = laves__node_make(e, LAVES__OP_NEGATE, laves__script_field(L, 1, "ceil"), 0, 0);
   return finish(L, laves__node_make(e, LAVES__OP_NEGATE, laves__node_make(e, LAVES__OP_FLOOR, down, 0, 0), 0, 0), any_value(L));
 }
 
@@ -184,4 +184,9 @@ void laves__script_add_fields(lua_State *L) {
   lua_pop(L, 1);
   static const luaL_Reg conversions[] = {{"field", field_of}, {"solid", solid_of}, {NULL, NULL}};
   luaL_setfuncs(L, conversions, 0);
+}
+
+void laves__script_add_depth(lua_State *L, uint32_t leaf) {
+  push_field(L, laves__node_leaf(store(L), leaf));
+  lua_setfield(L, -2, "d");
 }

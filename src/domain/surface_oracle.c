@@ -243,6 +243,7 @@ void laves__surface_oracle(laves__surface *s, laves__oracle *oracle) {
   oracle->side = side;
   oracle->tag = s->tags ? tag : NULL;
   oracle->sample = laves__surface_sample;
+  oracle->surface = s;
   if (!s->open && !s->needs_winding) {
     oracle->flat_face_count = s->face_count;
     oracle->flat_face = flat_face;
