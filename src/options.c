@@ -23,6 +23,7 @@ laves_options laves_options_default(void) {
                          .min_dihedral = 40,
                          .max_dihedral = 125,
                          .volume_length = 0.6,
+                         .grading = 0.3,
                          .cookie = options_cookie};
 }
 
@@ -46,6 +47,27 @@ static laves_result check_rotation(const double r[9], laves_error *error) {
   return LAVES_OK;
 }
 
+/* Zero, which leaves a source out, or in its range. */
+static laves_result check_optional(const char *name, double value, double low, double high, laves_error *error) {
+  if (value == 0 || (value >= low && value <= high && isfinite(value))) return LAVES_OK;
+  if (high == INFINITY)
+    return laves__fail(error, LAVES_ERROR_OPTION, "%s is %g but must be zero (none) or a positive number", name, value);
+  return laves__fail(error, LAVES_ERROR_OPTION, "%s is %g but must be zero (none) or lie between %g and %g", name, value, low,
+                     high);
+}
+
+static laves_result check_sizing(const laves_options *o, laves_error *error) {
+  laves_result result = check_range("grading", o->grading, 0.05, 1, error);
+  if (result == LAVES_OK) result = check_optional("min_size", o->min_size, 0, INFINITY, error);
+  if (result == LAVES_OK) result = check_optional("curvature_elements", o->curvature_elements, 3, 1000, error);
+  if (result == LAVES_OK) result = check_optional("thickness_elements", o->thickness_elements, 0.5, 100, error);
+  if (result == LAVES_OK) result = check_optional("feature_elements", o->feature_elements, 0.5, 100, error);
+  if (result == LAVES_OK) result = check_optional("max_distance", o->max_distance, 0, INFINITY, error);
+  if (result == LAVES_OK) result = check_range("interior_growth", o->interior_growth, 0, 1, error);
+  if (result == LAVES_OK) result = check_optional("max_size", o->max_size, 0, INFINITY, error);
+  return result;
+}
+
 laves_result laves__options_check(const laves_options *o, laves_error *error) {
   if (o->cookie != options_cookie)
     return laves__fail(error, LAVES_ERROR_OPTION, "the options did not come from laves_options_default()");
@@ -66,6 +88,7 @@ laves_result laves__options_check(const laves_options *o, laves_error *error) {
   if (result == LAVES_OK) result = check_range("min_dihedral", o->min_dihedral, 0, 60, error);
   if (result == LAVES_OK) result = check_range("max_dihedral", o->max_dihedral, 80, 180, error);
   if (result == LAVES_OK) result = check_range("volume_length", o->volume_length, 0, 0.8, error);
+  if (result == LAVES_OK) result = check_sizing(o, error);
   if (result == LAVES_OK && (unsigned)o->align > LAVES_ALIGN_ROTATION)
     result = laves__fail(error, LAVES_ERROR_OPTION, "align is %d, which is no laves_align", (int)o->align);
   if (result == LAVES_OK && o->align == LAVES_ALIGN_ROTATION) result = check_rotation(o->rotation, error);

@@ -1,6 +1,6 @@
 /* laves: near-regular tetrahedral meshes of any solid.  The public interface, in order of use:
  *
- *   version -> results and errors -> context -> domain -> options -> generate -> mesh -> check -> certificate -> files
+ *   version -> results and errors -> context -> domain -> sizing -> options -> generate -> mesh -> check -> certificate -> files
  *
  * Conventions, everywhere: signed distance negative inside; tetrahedra positive, det[b-a, c-a, d-a] > 0; boundary
  * triangles face outwards; indices from 0; coordinates in the units of the input; angles in degrees.
@@ -209,6 +209,51 @@ typedef struct laves_thin_place {
 /// @return how many were found; 0 for domains that are not surfaces
 LAVES_API size_t laves_domain_thin_places(const laves_domain *domain, laves_thin_place *places, size_t capacity);
 
+/* ---- sizing ----------------------------------------------------------------------------------------------------- */
+
+/// Where elements shall be small: a list of sources, each of which asks for sizes (edge lengths, in the units of the input) in
+/// some part of space. The least one counts everywhere, and what laves_options asks for besides; see laves_options.sizing
+/// and docs/sizing.md. Belongs to a context; may be used for many domains, and by several threads once all is added.
+typedef struct laves_sizing laves_sizing;
+
+/// @param sizing  out: without sources; owned by the caller, free with laves_sizing_free(); NULL on failure
+LAVES_API laves_result laves_sizing_create(laves_context *context, laves_sizing **sizing, laves_error *error);
+LAVES_API void laves_sizing_free(laves_sizing *sizing);
+
+/// Adds a size as a Lua expression such as "0.02 + 0.1*abs(x)", of x, y, z (coordinates of the input) and d, the depth below
+/// the domain's surface: its distance inside, zero on it and outside. Functions are those of docs/implicit.md; the value of a
+/// solid is field(solid). Outside the domain's box the size is that of the nearest place of the box. Values inside the
+/// domain must be positive and finite: one that is not is an error when the mesh is made, with its place.
+/// @return LAVES_OK, LAVES_ERROR_INPUT (it cannot be understood), LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED
+LAVES_API laves_result laves_sizing_add_expression(laves_sizing *sizing, const char *text, laves_error *error);
+
+/// The same from a file with a Lua script that returns such an expression. Surfaces that it names are looked for beside it.
+LAVES_API laves_result laves_sizing_add_script(laves_sizing *sizing, const char *path, laves_error *error);
+
+/// Adds sizes from a background file (NRRD, VTU, Gmsh .msh or .pos): a mesh or image with values, which are sizes in the units of
+/// the input and are interpolated; outside, the nearest place of the background counts (docs/sizing.md).
+/// @param array_name  of the array or view with the sizes; NULL: the only one in the file, or else the one named "size"
+LAVES_API laves_result laves_sizing_add_background(laves_sizing *sizing, const char *path, const char *array_name,
+                                                   laves_error *error);
+
+/// Adds points about which elements have a size: that within `radius`, growing beyond by laves_options.grading per unit of
+/// distance, as for the next two.
+/// @param points  double[count][3], finite; copied
+/// @param size    positive    @param radius  0 or more
+/// @return LAVES_OK, LAVES_ERROR_OPTION, LAVES_ERROR_MEMORY
+LAVES_API laves_result laves_sizing_add_points(laves_sizing *sizing, const double *points, size_t count, double size,
+                                               double radius, laves_error *error);
+
+/// The same about a polyline: each point is joined to the next. Close it by repeating the first point.
+LAVES_API laves_result laves_sizing_add_curve(laves_sizing *sizing, const double *points, size_t count, double size,
+                                              double radius, laves_error *error);
+
+/// The same about the triangles of the domain's surface that have a tag.
+/// @param name  as of laves_domain_tag_name(); or a tag's number in decimal. That there is none such in a domain is an error
+///              (LAVES_ERROR_INPUT) when the mesh is made.
+LAVES_API laves_result laves_sizing_add_tag(laves_sizing *sizing, const char *name, double size, double radius,
+                                            laves_error *error);
+
 /* ---- options ---------------------------------------------------------------------------------------------------- */
 
 /// How the boundary is made. AUTO: by snapping (no tetrahedron is cut), and by stuffing (tetrahedra are warped and cut, with
@@ -235,7 +280,19 @@ typedef struct laves_options {
   double min_dihedral;    ///< asked window for every dihedral angle, degrees; default 40, range 0..60
   double max_dihedral;    ///< default 125, range 80..180
   double volume_length;   ///< asked volume-length ratio sqrt(2) 6V / rms(edge)^3, 0..0.8; default 0.6
-  uint32_t cookie;        ///< set by laves_options_default(), checked by laves_generate()
+  // Sizes that vary (docs/sizing.md). `size` above, however it was given, is then the largest; the least of what the rest asks
+  // for counts at each place, never less than min_size, and is limited in its slope. All zero and NULL: uniform.
+  const laves_sizing *sizing;  ///< sources with a place of their own; NULL: none. Must outlive the call.
+  double grading;              ///< how much the size may grow per unit of distance, 0.05..1; default 0.3
+  double min_size;             ///< units of the input, at most size; 0: size / 64
+  double curvature_elements;   ///< elements round a full circle of the surface's smaller radius of curvature, 0 or 3..1000
+  double thickness_elements;   ///< elements across any wall or gap, 0 or 0.5..100
+  double feature_elements;     ///< elements between creases that come close to one another (surfaces only), 0 or 0.5..100
+  double max_distance;         ///< wished distance between boundary and surface where it is smooth, units of the input; 0: none
+  double interior_growth;      ///< growth of the size per unit of depth below the surface, 0..1, beyond `size`, which is then
+                               ///< the size at the surface; where it exceeds grading, grading holds. 0: none
+  double max_size;             ///< where that growth ends, at least size; 0: 16 sizes. Without growth it has no effect.
+  uint32_t cookie;             ///< set by laves_options_default(), checked by laves_generate()
 } laves_options;
 
 LAVES_API laves_options laves_options_default(void);
