@@ -7,6 +7,7 @@
 #include "input.h"
 #include "output.h"
 #include "session.h"
+#include "sizing.h"
 #include "statement.h"
 #include "summary.h"
 #include "text.h"
@@ -19,6 +20,7 @@ static const double volume_slack = 0.1;
 typedef struct mesh_run {
   input in;
   outputs plan;
+  laves_sizing *sizing; /* NULL: none */
   laves_options options;
   laves_mesh *mesh;
   laves_report report;
@@ -27,7 +29,7 @@ typedef struct mesh_run {
   double certify_seconds;
 } mesh_run;
 
-static laves_options make_options(const settings *given) {
+static laves_options make_options(const settings *given, const laves_sizing *sizing) {
   laves_options options = laves_options_default();
   options.size = given->size;
   options.relative_size = given->relative_size;
@@ -43,6 +45,7 @@ static laves_options make_options(const settings *given) {
     options.max_dihedral = given->window.values[1];
   }
   if (given->volume_length >= 0) options.volume_length = given->volume_length;
+  sizing_options(given, sizing, &options);
   return options;
 }
 
@@ -131,10 +134,11 @@ static laves_result mesh_steps(session *run, mesh_run *all) {
   input_default_output(given->input, given->format, fallback, sizeof fallback);
   laves_result result = outputs_plan(run, fallback, given->input, &all->plan);
   if (result == LAVES_OK) result = outputs_plan_certificate(run, given->input, &all->plan);
+  if (result == LAVES_OK) result = sizing_open(run, &all->sizing);
   if (result == LAVES_OK) result = input_open(run, given->input, &all->in);
   if (result != LAVES_OK) return result;
 
-  all->options = make_options(given);
+  all->options = make_options(given, all->sizing);
   result = laves_generate(run->context, all->in.domain, &all->options, &all->mesh, &all->report, &run->error);
   result = session_settle(run, result);
   if (result != LAVES_OK && result != LAVES_TARGET_MISSED) return result;
@@ -199,6 +203,7 @@ static void write_options(json *out, const settings *given, const laves_options 
   json_boolean(out, "improve", options->improve);
   json_numbers(out, "window", (const double[2]){options->min_dihedral, options->max_dihedral}, 2);
   json_number(out, "volume_length", options->volume_length);
+  sizing_write_json(out, given);
   json_close(out);
 }
 
@@ -248,6 +253,7 @@ int command_mesh(const settings *given) {
   laves_result result = mesh_steps(&run, &all);
   session_write_json(&run, &result, mesh_json, &all);
   laves_mesh_free(all.mesh);
+  laves_sizing_free(all.sizing);
   laves_domain_free(all.in.domain);
   return session_close(&run, result);
 }

@@ -50,6 +50,7 @@ const size_t command_count = sizeof commands / sizeof commands[0];
 #define MEMBER(name) offsetof(settings, name)
 
 #define IN_SIZE "Size (at most one; none: about 50 thousand tetrahedra)"
+#define IN_SIZING "Sizes that vary (docs/sizing.md); the size above is the largest, and the least asked for counts"
 #define IN_TILING "Tiling"
 #define IN_SHAPE "Shape"
 #define IN_CHECK "Check"
@@ -70,6 +71,31 @@ const option option_rows[] = {
      "mean edge length; a cubic cell has side 2.5118 H"},
     {"cells", 0, TILING, IN_TILING, OPTION_CELLS, "N[,N,N]", "cells", false, 1, 1000, "4", MEMBER(cells), 0,
      "periods along each axis, 136 tetrahedra in each cell"},
+
+    {"size-field", 0, MESH, IN_SIZING, OPTION_WORDS, "FIELD", NULL, false, 0, TEXTS_CAPACITY, NULL, MEMBER(size_fields), 0,
+     "sizes over space: a Lua expression of x, y, z and d, the depth below the surface; a script (.lua) that returns one; or a "
+     "background mesh or image with sizes (.vtu, .msh, .pos, .nrrd), FILE or FILE:ARRAY; repeatable"},
+    {"refine", 0, MESH, IN_SIZING, OPTION_WORDS, "PLACE=SIZE[,RADIUS]", NULL, false, 0, TEXTS_CAPACITY, NULL, MEMBER(refinements),
+     0,
+     "that size within the radius of a place, growing beyond by the grading: tag:NAME, point:X,Y,Z, or curve:FILE with a point "
+     "on each line, where an empty line ends a polyline; repeatable"},
+    {"curvature-elements", 0, MESH, IN_SIZING, OPTION_REAL, "N", "elements", false, 3, 1000, NULL, MEMBER(curvature_elements), 0,
+     "elements round a full circle, wherever the surface bends"},
+    {"thickness-elements", 0, MESH, IN_SIZING, OPTION_REAL, "N", "elements", false, 0.5, 100, NULL, MEMBER(thickness_elements), 0,
+     "elements across every wall and gap"},
+    {"feature-elements", 0, MESH, IN_SIZING, OPTION_REAL, "N", "elements", false, 0.5, 100, NULL, MEMBER(feature_elements), 0,
+     "elements between creases that come close to one another (surfaces only)"},
+    {"max-distance", 0, MESH, IN_SIZING, OPTION_REAL, "D", "units of the input", true, 0, INFINITY, NULL, MEMBER(max_distance), 0,
+     "size the boundary so that it lies within this distance of the surface where that is smooth"},
+    {"interior-growth", 0, MESH, IN_SIZING, OPTION_REAL, "G", "size per depth", true, 0, 1, NULL, MEMBER(interior_growth), 0,
+     "fine at the surface, coarse inside: the size grows by this per unit of depth, beyond the size above; no faster than "
+     "the grading"},
+    {"max-size", 0, MESH, IN_SIZING, OPTION_REAL, "H", "units of the input", true, 0, INFINITY, "16 sizes", MEMBER(max_size), 0,
+     "where that growth ends"},
+    {"min-size", 0, MESH, IN_SIZING, OPTION_REAL, "H", "units of the input", true, 0, INFINITY, "a 64th of the size",
+     MEMBER(min_size), 0, "no element is asked to be smaller, whatever asks for it"},
+    {"grading", 0, MESH, IN_SIZING, OPTION_REAL, "G", "size per distance", false, 0.05, 1, "0.3", MEMBER(grading), 0,
+     "how fast the size may grow from place to place"},
 
     {"align", 0, MESH, IN_SHAPE, OPTION_ALIGNMENT, "HOW", NULL, false, 0, 0, "none", MEMBER(alignment), 0,
      "how the lattice lies: none, pca (principal axes), an axis and an angle in degrees as x,y,z,angle, or a rotation matrix as "
@@ -113,11 +139,11 @@ const option option_rows[] = {
     {"lines", 0, VIEW, IN_PICTURE, OPTION_REAL, "W", "pixels", false, 0, 20, "0.9", MEMBER(lines), 0,
      "width of the edges; 0: none"},
 
-    {"output", 'o', MESH, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, 0, "INPUT's base name and .vtu, here", MEMBER(outputs),
-     0, "where the mesh goes; repeat it for several formats"},
-    {"output", 'o', TILING, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, 0, NULL, MEMBER(outputs), 0,
+    {"output", 'o', MESH, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, OUTPUT_CAPACITY, "INPUT's base name and .vtu, here",
+     MEMBER(outputs), 0, "where the mesh goes; repeat it for several formats"},
+    {"output", 'o', TILING, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, OUTPUT_CAPACITY, NULL, MEMBER(outputs), 0,
      "write the tiling as a mesh; repeat it for several formats"},
-    {"output", 'o', VIEW, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, 0, NULL, MEMBER(outputs), 0,
+    {"output", 'o', VIEW, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, OUTPUT_CAPACITY, NULL, MEMBER(outputs), 0,
      "where the picture goes (PNG); needed"},
     {"format", 0, MESH | TILING, IN_FILES, OPTION_FORMAT, "NAME", NULL, false, 0, 0, "from the extension", MEMBER(format), 0,
      "format of the one output: "},

@@ -192,9 +192,9 @@ static bool parse_method(const char *text, laves_method *method, char *wrong) {
   return false;
 }
 
-static bool parse_words(const char *text, option_texts *list, char *wrong) {
-  if (list->count == OUTPUT_CAPACITY) {
-    snprintf(wrong, SENTENCE_CAPACITY, "can be given %d times at most", OUTPUT_CAPACITY);
+static bool parse_words(const option *row, const char *text, option_texts *list, char *wrong) {
+  if (list->count == (int)row->high) {
+    snprintf(wrong, SENTENCE_CAPACITY, "can be given %d times at most", list->count);
     return false;
   }
   list->items[list->count++] = text;
@@ -212,7 +212,7 @@ static bool store_value(const option *row, const char *text, settings *given, ch
       *(const char **)member = text;
       return true;
     case OPTION_WORDS:
-      return parse_words(text, member, wrong);
+      return parse_words(row, text, member, wrong);
     case OPTION_REAL:
       return parse_real(row, text, member, wrong);
     case OPTION_COUNT:
@@ -362,6 +362,7 @@ options_outcome options_parse(const command *about, int count, char **words, set
   *given = (settings){.command = about->name,
                       .volume_length = -1,
                       .guarantee = 14.4,
+                      .grading = 0.3,
                       .compress = 1,
                       .list = 5,
                       .color = "class",

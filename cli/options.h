@@ -9,11 +9,11 @@
 
 #include "laves/laves.h"
 
-enum { OUTPUT_CAPACITY = 8, OPTION_CAPACITY = 64 /* rows of the table */ };
+enum { OUTPUT_CAPACITY = 8, TEXTS_CAPACITY = 64, OPTION_CAPACITY = 64 /* rows of the table */ };
 
 /* A list of values of one option that may be repeated. */
 typedef struct option_texts {
-  const char *items[OUTPUT_CAPACITY];
+  const char *items[TEXTS_CAPACITY];
   int count;
 } option_texts;
 
@@ -47,6 +47,9 @@ typedef struct settings {
   int64_t compress, threads, list;
   int64_t memory; /* bytes; 0: no limit */
   option_numbers cells;
+  double grading, min_size, max_size; /* sizes 0: not given */
+  double curvature_elements, thickness_elements, feature_elements, max_distance, interior_growth;
+  option_texts size_fields, refinements;
   const char *cut; /* NULL: not given */
   const char *color, *view, *up, *pixels, *background;
   double lines; /* pixels */
@@ -55,7 +58,7 @@ typedef struct settings {
 typedef enum option_kind {
   OPTION_FLAG,      /* bool */
   OPTION_WORD,      /* const char * */
-  OPTION_WORDS,     /* option_texts */
+  OPTION_WORDS,     /* option_texts, of `high` at most */
   OPTION_REAL,      /* double */
   OPTION_COUNT,     /* int64_t; 50k, 1.5M */
   OPTION_BYTES,     /* int64_t; 500M, 2G, powers of 1024 */
