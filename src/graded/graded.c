@@ -15,7 +15,8 @@ static void measure_vertices(void *user, size_t begin, size_t end, int worker) {
   laves__graph *g = user;
   for (size_t v = begin; v < end; v++) {
     double sum = 0;
-    for (uint32_t k = g->link_first[v]; k < g->link_first[v + 1]; k++) sum += v3_distance(g->position[v], g->position[g->link[k]]);
+    for (uint32_t k = g->link_first[v]; k < g->link_first[v + 1]; k++)
+      sum += v3_distance(g->position[v], g->position[g->link[k]]);
     const uint32_t links = g->link_first[v + 1] - g->link_first[v];
     g->scale[v] = links ? (float)(sum / links) : 1;
     g->hull[v] = !is_inner(g, v);

@@ -113,8 +113,8 @@ static double least_wish(const sounding *s, const laves__node *n) {
     for (int z = 0; z < DENSE_SPREAD; z++)
       for (int y = 0; y < DENSE_SPREAD; y++)
         for (int x = 0; x < DENSE_SPREAD; x++)
-          at[count++] = v3(c.x + (x - DENSE_SPREAD / 2) * step, c.y + (y - DENSE_SPREAD / 2) * step,
-                           c.z + (z - DENSE_SPREAD / 2) * step);
+          at[count++] =
+              v3(c.x + (x - DENSE_SPREAD / 2) * step, c.y + (y - DENSE_SPREAD / 2) * step, c.z + (z - DENSE_SPREAD / 2) * step);
   }
   return least_of(s->demand, count, at);
 }
@@ -339,8 +339,7 @@ typedef struct plateau_search {
 static void find_plateaus(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const plateau_search *s = user;
-  for (size_t i = begin; i < end; i++)
-    s->found[i] = is_surrounded(s->tree, &s->tree->node[s->tree->leaf[i]], s->depth - 1);
+  for (size_t i = begin; i < end; i++) s->found[i] = is_surrounded(s->tree, &s->tree->node[s->tree->leaf[i]], s->depth - 1);
 }
 
 static laves_result measure_plateaus(laves__octree *tree, laves_error *error) {

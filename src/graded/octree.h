@@ -24,11 +24,11 @@ typedef struct laves__demand {
 } laves__demand;
 
 typedef struct laves__node {
-  int32_t at[3];  /* lower corner */
-  int32_t side;   /* 4 times a power of two */
-  int32_t child;  /* first of eight, x fastest; -1: a leaf */
-  int32_t order;  /* of leaves that are not outside: place in the list */
-  float size;     /* wished at the centre, never steeper than the grading */
+  int32_t at[3]; /* lower corner */
+  int32_t side;  /* 4 times a power of two */
+  int32_t child; /* first of eight, x fastest; -1: a leaf */
+  int32_t order; /* of leaves that are not outside: place in the list */
+  float size;    /* wished at the centre, never steeper than the grading */
   bool outside;
   int8_t plateau; /* of leaves: how many leaves of the same side lie around it in each direction at least, up to 2 */
 } laves__node;

@@ -22,10 +22,10 @@ enum { TETS_MAX = 96 }; /* that one leaf owns */
 typedef struct filling {
   const laves__octree *tree;
   const laves__sites *sites;
-  laves__key_table table;     /* of all vertices */
-  int32_t (*corner)[8];       /* [leaf_count] vertices at the corners of each leaf, -1 where the site is gone */
-  int32_t *centre;            /* [leaf_count] */
-  uint32_t *first;            /* [leaf_count + 1] */
+  laves__key_table table; /* of all vertices */
+  int32_t (*corner)[8];   /* [leaf_count] vertices at the corners of each leaf, -1 where the site is gone */
+  int32_t *centre;        /* [leaf_count] */
+  uint32_t *first;        /* [leaf_count + 1] */
   laves__graph *graph;
 } filling;
 

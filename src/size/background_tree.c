@@ -14,7 +14,9 @@
 
 /* Items of a leaf; tets are dearer to look at than boxes. Levels parted at the middle: enough to reach details 2^-13 of the
  * whole along three axes; at most 32 levels of halves follow. */
-enum { LEAF_ITEMS = 4, MIDDLE_LEVELS = 40, STACK_SIZE = MIDDLE_LEVELS + 34, NODES_PER_QUESTION = 1 << 14 };
+enum { LEAF_ITEMS = 4, MIDDLE_LEVELS = 40, STACK_SIZE = MIDDLE_LEVELS + 34 };
+
+enum { ITEMS_PER_QUESTION = 1 << 20 }; /* looked at between two questions whether to cancel */
 
 /* ---- building ---- */
 
@@ -83,11 +85,15 @@ static laves_result build(laves__background_tree *tree, laves_error *error) {
   range stack[STACK_SIZE] = {{.end = (uint32_t)tree->item_count}};
   int height = 1;
   if (!add_nodes(tree, 1)) return laves__fail_memory(tree->context, error);
-  for (size_t done = 1; height > 0; done++) {
+  for (size_t looked_at = ITEMS_PER_QUESTION; height > 0;) {
     const range r = stack[--height];
+    looked_at += r.end - r.begin;
+    if (looked_at > ITEMS_PER_QUESTION) {
+      if (laves__cancelled(tree->context, "read", 1)) return laves__fail_cancelled(error);
+      looked_at = 0;
+    }
     laves__background_node *node = &tree->nodes[r.node];
     *node = (laves__background_node){range_box(tree, &r), r.begin, r.end - r.begin};
-    if (done % NODES_PER_QUESTION == 1 && laves__cancelled(tree->context, "read", 1)) return laves__fail_cancelled(error);
     if (node->count <= LEAF_ITEMS) continue;
     uint32_t parting = r.level < MIDDLE_LEVELS ? part_at_middle(tree, &r) : r.begin;
     if (parting == r.begin || parting == r.end) parting = r.begin + (r.end - r.begin) / 2;

@@ -52,8 +52,7 @@ static void make(laves_context *context, const char *solid, const spots *s, lave
   assert_int_equal(laves_domain_from_expression(context, solid, &domain, &error), LAVES_OK);
   const laves__frame frame = {
       .oracle = &domain->oracle, .rotation = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, .size = 1, .centre = {0, 0, 0}};
-  const laves__demand demand = {
-      .self = s, .evaluate = wish_all, .grading = s->growth, .smallest = 0.12, .largest = s->largest};
+  const laves__demand demand = {.self = s, .evaluate = wish_all, .grading = s->growth, .smallest = 0.12, .largest = s->largest};
   memset(graph, 0, sizeof *graph);
   if (laves__graded_background(&frame, &demand, context, graph, &error) != LAVES_OK) fail_msg("%s", error.text);
   laves_domain_free(domain);
@@ -100,8 +99,9 @@ static int shape_of(const laves__vec3 p[4]) {
 
 static laves_mesh *mesh_of(laves_context *context, const laves__graph *g) {
   laves_mesh *mesh;
-  assert_int_equal(laves_mesh_from_arrays(context, &g->position->x, g->vertex_count, &g->tet[0][0], g->tet_count, NULL, &mesh, NULL),
-                   LAVES_OK);
+  assert_int_equal(
+      laves_mesh_from_arrays(context, &g->position->x, g->vertex_count, &g->tet[0][0], g->tet_count, NULL, &mesh, NULL),
+      LAVES_OK);
   return mesh;
 }
 

@@ -155,6 +155,31 @@ static void short_memory_is_told(void **state) {
   }
 }
 
+static bool say_no(void *user, const char *phase, double fraction) {
+  assert_string_equal(phase, "read");
+  assert_true(fraction >= 0 && fraction <= 1);
+  ++*(int *)user;
+  return false;
+}
+
+static void meshes_can_be_cancelled(void **state) {
+  fixture *f = *state;
+  int asked = 0;
+  laves_context_options options = laves_context_options_default();
+  options.progress = say_no;
+  options.progress_user = &asked;
+  laves_context *context = laves_context_create(&options);
+  size_file file = fixture_size_file(SIZE_FILE_KINDS - 1, 2);
+  laves__background_sizes *sizes;
+  assert_int_equal(laves__background_parse(context, file.name, file.bytes, file.length, NULL, &sizes, &f->error),
+                   LAVES_ERROR_CANCELLED);
+  assert_null(sizes);
+  assert_int_equal(asked, 1);
+  assert_int_equal(laves_context_bytes(context), 0);
+  laves_context_free(context);
+  free(file.bytes);
+}
+
 /* ---- NRRD ---- */
 
 #define NRRD "NRRD0004\ntype: double\ndimension: 3\nencoding: ascii\n"
@@ -459,6 +484,7 @@ int main(void) {
       cmocka_unit_test(cut_files_do_no_harm),
       cmocka_unit_test(places_that_are_no_places_have_sizes),
       cmocka_unit_test(short_memory_is_told),
+      cmocka_unit_test(meshes_can_be_cancelled),
       cmocka_unit_test(images_stand_where_their_header_says),
       cmocka_unit_test(slanted_images_are_followed),
       cmocka_unit_test(all_types_are_read),
