@@ -15,6 +15,14 @@
 /* Where a tetrahedron comes from: a tile of C15 or of BCC as it is, or a transition between sizes. */
 typedef enum laves__tile { LAVES__TILE_OTHER, LAVES__TILE_C15, LAVES__TILE_BCC } laves__tile;
 
+/* What the stages know of a tetrahedron; see laves__record for what each means. */
+typedef enum laves__tet_flag {
+  LAVES__TET_SOLID = 1,
+  LAVES__TET_ELIGIBLE = 2,
+  LAVES__TET_STAMPED = 4,
+  LAVES__TET_LAYER = 8,
+} laves__tet_flag;
+
 /* More tets than this around one vertex are refused by whoever makes them: stars are masks of 64 bits. */
 enum { LAVES__STAR_LIMIT = 60, LAVES__LINK_LIMIT = 32 };
 
@@ -32,7 +40,7 @@ typedef struct laves__graph {
   int32_t *star;        /* tets around each vertex, ascending */
   uint32_t *link_first; /* [vertex_count + 1] */
   int32_t *link;        /* vertices around each vertex, ascending */
-  uint8_t *flags;       /* [tet_count] what records hold as bits for the tiling: LAVES__TET_... */
+  uint8_t *flags;       /* [tet_count] laves__tet_flag, which records hold as bits for the tiling */
 } laves__graph;
 
 /* The lists; LAVES_ERROR_MEMORY. */

@@ -1,5 +1,5 @@
 /* Bricks, cells and records: how sites of the tiling find one another.  See lattice.h for the drawing. */
-#include "background/lattice.h"
+#include "background/site.h"
 
 #include <string.h>
 
@@ -61,6 +61,18 @@ int32_t laves__lattice_cell(const laves__lattice *lattice, int32_t x, int32_t y,
   return entry < 0 ? entry : lattice->brick[entry].cell[inside];
 }
 
+/* A record all of whose sites have one sign. */
+static void fill_record(laves__record *record, int8_t sign) {
+  memset(record, 0, sizeof *record);
+  for (int site = 0; site < LAVES__C15_SITES; site++) {
+    record->phi[site] = sign * HUGE_VAL;
+    record->hint[site] = LAVES__NO_HINT;
+    record->sign[site] = record->label[site] = sign;
+    record->vertex[site] = -1;
+    record->depth[site] = UINT8_MAX;
+  }
+}
+
 int32_t laves__lattice_add_record(laves__lattice *lattice, int32_t x, int32_t y, int32_t z) {
   int inside = 0;
   const int64_t slot = find_slot(lattice, x, y, z, &inside);
@@ -80,19 +92,29 @@ int32_t laves__lattice_add_record(laves__lattice *lattice, int32_t x, int32_t y,
                    sizeof *lattice->record))
     return -1;
   laves__record *record = &lattice->record[lattice->record_count];
-  const int8_t sign = known == LAVES__OUT ? 1 : -1;
-  memset(record, 0, sizeof *record);
+  fill_record(record, known == LAVES__OUT ? 1 : -1);
   record->xyz[0] = x;
   record->xyz[1] = y;
   record->xyz[2] = z;
-  for (int site = 0; site < LAVES__C15_SITES; site++) {
-    record->phi[site] = sign * HUGE_VAL;
-    record->hint[site] = LAVES__NO_HINT;
-    record->sign[site] = record->label[site] = sign;
-    record->vertex[site] = -1;
-    record->depth[site] = UINT8_MAX;
-  }
   return lattice->brick[entry].cell[inside] = (int32_t)lattice->record_count++;
+}
+
+laves_result laves__lattice_of_graph(laves_context *context, laves__graph *graph, laves__lattice *lattice, laves_error *error) {
+  memset(lattice, 0, sizeof *lattice);
+  const size_t records = (graph->vertex_count + LAVES__C15_SITES - 1) / LAVES__C15_SITES;
+  if (records > INT32_MAX / LAVES__C15_SITES || graph->tet_count > INT32_MAX / 2)
+    return laves__fail(error, LAVES_ERROR_OPTION,
+                       "the graded background would have %zu tetrahedra, more than can be indexed; choose a larger size",
+                       graph->tet_count);
+  const laves_result result = graph->star_first ? LAVES_OK : laves__graph_link(graph, error);
+  if (result != LAVES_OK) return result;
+  lattice->context = context;
+  lattice->graph = graph;
+  lattice->record = laves__alloc(context, records, sizeof *lattice->record);
+  if (!lattice->record) return laves__fail_memory(context, error);
+  lattice->record_count = lattice->record_capacity = records;
+  for (size_t i = 0; i < records; i++) fill_record(&lattice->record[i], 1);
+  return LAVES_OK;
 }
 
 void laves__lattice_link(laves__lattice *lattice) {
@@ -106,13 +128,6 @@ void laves__lattice_link(laves__lattice *lattice) {
   }
 }
 
-laves__vec3 laves__site_position(const int32_t cell[3], int site) {
-  const double unit = 1 / LAVES__C15_MEAN_EDGE;
-  const int8_t *p = laves__c15_site[site];
-  return v3(((double)cell[0] * LAVES__C15_PERIOD + p[0]) * unit, ((double)cell[1] * LAVES__C15_PERIOD + p[1]) * unit,
-            ((double)cell[2] * LAVES__C15_PERIOD + p[2]) * unit);
-}
-
 bool laves__tet_kept(const laves__lattice *lattice, const laves__site corners[4]) {
   bool any_in = false;
   for (int k = 0; k < 4; k++) {
@@ -123,12 +138,32 @@ bool laves__tet_kept(const laves__lattice *lattice, const laves__site corners[4]
   return any_in;
 }
 
+/* laves__star_kept() of a vertex of a graph that is not OUT. */
+static uint64_t graph_star_kept(const laves__lattice *lattice, laves__site s) {
+  const int size = laves__star_size(lattice, s);
+  uint64_t kept = 0;
+  for (int k = 0; k < size; k++) {
+    const laves__tet tet = laves__star_at(lattice, s, k).tet;
+    laves__site corner[4];
+    laves__corners_of(lattice, tet, corner);
+    bool any_in = laves__tet_is(lattice, tet, LAVES__TET_SOLID), any_out = false;
+    for (int j = 0; j < 4; j++) {
+      const laves__label label = laves__site_label(lattice, corner[j]);
+      any_in |= label == LAVES__LABEL_IN;
+      any_out |= label == LAVES__LABEL_OUT;
+    }
+    if (any_in && !any_out) kept |= UINT64_C(1) << k;
+  }
+  return kept;
+}
+
 /* The link of a site holds its neighbours, so the labels of those decide every tet of the star. */
-uint32_t laves__star_kept(const laves__lattice *lattice, int32_t record, int site) {
+uint64_t laves__star_kept(const laves__lattice *lattice, int32_t record, int site) {
   const laves__record *r = &lattice->record[record];
   const laves__label own = (laves__label)r->label[site];
   if (own == LAVES__LABEL_OUT) return 0;
-  uint32_t kept = 0;
+  if (lattice->graph) return graph_star_kept(lattice, (laves__site){record, (uint8_t)site});
+  uint64_t kept = 0;
   for (int k = 0; k < laves__c15_star_size[site]; k++) {
     const laves__c15_star_tet star = laves__c15_star[site][k];
     const int ox = star.cell % 3, oy = star.cell / 3 % 3, oz = star.cell / 9;
@@ -143,7 +178,7 @@ uint32_t laves__star_kept(const laves__lattice *lattice, int32_t record, int sit
     }
     if (any_out) continue;
     const int32_t owner = r->around[star.cell];
-    if (any_in || (owner >= 0 && laves__bit(lattice->record[owner].solid, star.tet))) kept |= UINT32_C(1) << k;
+    if (any_in || (owner >= 0 && laves__bit(lattice->record[owner].solid, star.tet))) kept |= UINT64_C(1) << k;
   }
   return kept;
 }

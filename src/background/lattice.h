@@ -6,6 +6,8 @@
  * with what is known of the cell's sites. Only cells near the surface have records.
  *
  *     directory[brick] --> LAVES__OUT | LAVES__IN | brick --> cell[64] --> LAVES__OUT | LAVES__IN | record
+ *
+ * A graded background (graph.h) has records alone. What both have in common is asked through site.h.
  */
 #ifndef LAVES_BACKGROUND_LATTICE_H
 #define LAVES_BACKGROUND_LATTICE_H
@@ -73,6 +75,11 @@ typedef struct laves__site {
 laves_result laves__lattice_create(laves_context *context, laves__box3 bounds, laves__lattice *lattice, laves_error *error);
 void laves__lattice_free(laves__lattice *lattice);
 
+/* A graded background as a lattice without cells: links the graph where it is not linked yet, and gives all its vertices records,
+ * outside as yet. The graph must outlive the lattice, whose freeing leaves it alone.
+ * LAVES_ERROR_MEMORY; LAVES_ERROR_OPTION when there are more vertices or tets than can be indexed. */
+laves_result laves__lattice_of_graph(laves_context *context, laves__graph *graph, laves__lattice *lattice, laves_error *error);
+
 /* LAVES__OUT, LAVES__IN or a record, for any cell, also beyond the directory. */
 int32_t laves__lattice_cell(const laves__lattice *lattice, int32_t x, int32_t y, int32_t z);
 /* Gives the cell a record, with all its sites of the sign that it had; its index, or -1 when memory is short. The cell
@@ -81,7 +88,12 @@ int32_t laves__lattice_add_record(laves__lattice *lattice, int32_t x, int32_t y,
 /* Recomputes `around` of all records. */
 void laves__lattice_link(laves__lattice *lattice);
 
-laves__vec3 laves__site_position(const int32_t cell[3], int site);
+static inline laves__vec3 laves__site_position(const int32_t cell[3], int site) {
+  const double unit = 1 / LAVES__C15_MEAN_EDGE;
+  const int8_t *p = laves__c15_site[site];
+  return v3(((double)cell[0] * LAVES__C15_PERIOD + p[0]) * unit, ((double)cell[1] * LAVES__C15_PERIOD + p[1]) * unit,
+            ((double)cell[2] * LAVES__C15_PERIOD + p[2]) * unit);
+}
 
 /* The neighbour k of a site of a record. */
 static inline laves__site laves__neighbour(const laves__record *record, int site, int k) {
@@ -112,8 +124,8 @@ static inline void laves__tet_sites(const laves__record *record, int tet, laves_
  * its cell's `solid` says so, which this function does not look at. */
 bool laves__tet_kept(const laves__lattice *lattice, const laves__site corners[4]);
 
-/* Which of the tetrahedra around a site are part of the mesh: bit k for laves__c15_star[site][k]. */
-uint32_t laves__star_kept(const laves__lattice *lattice, int32_t record, int site);
+/* Which of the tetrahedra around a site are part of the mesh: bit k for laves__c15_star[site][k], or the graph's star. */
+uint64_t laves__star_kept(const laves__lattice *lattice, int32_t record, int site);
 
 /* Bits of tetrahedra. */
 static inline bool laves__bit(const uint64_t set[3], int tet) { return set[tet >> 6] >> (tet & 63) & 1; }
