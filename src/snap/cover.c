@@ -22,25 +22,27 @@ typedef struct candidates {
   size_t count;
 } candidates;
 
-static bool has_crossing(const laves__lattice *lattice, const laves__record *r, int site) {
-  for (int k = 0; k < laves__c15_degree[site]; k++)
-    if (laves__site_sign(lattice, laves__neighbour(r, site, k)) != r->sign[site]) return true;
+static bool has_crossing(const laves__lattice *lattice, laves__site s) {
+  const laves__ring ring = laves__ring_of(lattice, s);
+  const int sign = laves__site_sign(lattice, s);
+  for (int k = 0; k < ring.count; k++)
+    if (laves__site_sign(lattice, laves__ring_at(&ring, k)) != sign) return true;
   return false;
 }
 
-/* |phi| where that is a distance, else the distance to the foot that projection finds. */
+/* |phi| where that is a distance, else the distance to the foot that projection finds; in local sizes. */
 static void measure(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   candidates *c = user;
   for (size_t i = begin; i < end; i++) {
     const uint32_t id = (uint32_t)c->key[i];
-    const int32_t record = (int32_t)(id / LAVES__C15_SITES);
-    const int site = (int)(id % LAVES__C15_SITES);
-    double distance = fabs(c->lattice->record[record].phi[site]);
+    const laves__site s = laves__site_of(id);
+    double distance = fabs(c->lattice->record[s.cell].phi[s.site]);
     if (!c->frame->oracle->is_distance) {
-      const laves__foot *foot = laves__feet_get(c->feet, record, site);
-      distance = foot ? v3_distance(laves__site_position(c->lattice->record[record].xyz, site), foot->position) : HUGE_VAL;
+      const laves__foot *foot = laves__feet_get(c->feet, s.cell, s.site);
+      distance = foot ? v3_distance(laves__site_place(c->lattice, s), foot->position) : HUGE_VAL;
     }
+    distance /= laves__site_scale(c->lattice, s);
     c->key[i] = laves__sort_key(distance < 1e30 ? distance : 1e30, id);
   }
 }
@@ -54,19 +56,22 @@ static void find_crossings(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const gather *g = user;
   for (size_t i = begin; i < end; i++) {
-    const laves__record *r = &g->lattice->record[i];
     uint32_t mask = 0;
-    for (int site = 0; site < LAVES__C15_SITES; site++)
-      if (has_crossing(g->lattice, r, site)) mask |= UINT32_C(1) << site;
+    for (int site = 0; site < LAVES__C15_SITES; site++) {
+      const laves__site s = {(int32_t)i, (uint8_t)site};
+      if (has_crossing(g->lattice, s) && !laves__is_hull(g->lattice, s)) mask |= UINT32_C(1) << site;
+    }
     g->mask[i] = mask;
   }
 }
 
 /* Whether a site has a neighbour of the other sign that is not ON. */
-static bool is_exposed(const laves__lattice *lattice, const laves__record *r, int site) {
-  for (int k = 0; k < laves__c15_degree[site]; k++) {
-    const laves__site s = laves__neighbour(r, site, k);
-    if (laves__site_sign(lattice, s) != r->sign[site] && laves__site_label(lattice, s) != LAVES__LABEL_ON) return true;
+static bool is_exposed(const laves__lattice *lattice, laves__site s) {
+  const laves__ring ring = laves__ring_of(lattice, s);
+  const int sign = laves__site_sign(lattice, s);
+  for (int k = 0; k < ring.count; k++) {
+    const laves__site n = laves__ring_at(&ring, k);
+    if (laves__site_sign(lattice, n) != sign && laves__site_label(lattice, n) != LAVES__LABEL_ON) return true;
   }
   return false;
 }
@@ -74,16 +79,13 @@ static bool is_exposed(const laves__lattice *lattice, const laves__record *r, in
 static void cover(const candidates *c) {
   laves__lattice *lattice = c->lattice;
   for (size_t i = 0; i < c->count; i++) {
-    const uint32_t id = (uint32_t)c->key[i];
-    laves__record *r = &lattice->record[id / LAVES__C15_SITES];
-    const int site = (int)(id % LAVES__C15_SITES);
-    if (is_exposed(lattice, r, site)) r->label[site] = LAVES__LABEL_ON;
+    const laves__site s = laves__site_of((uint32_t)c->key[i]);
+    if (is_exposed(lattice, s)) lattice->record[s.cell].label[s.site] = LAVES__LABEL_ON;
   }
   for (size_t i = c->count; i-- > 0;) {
-    const uint32_t id = (uint32_t)c->key[i];
-    laves__record *r = &lattice->record[id / LAVES__C15_SITES];
-    const int site = (int)(id % LAVES__C15_SITES);
-    if (r->label[site] == LAVES__LABEL_ON && !is_exposed(lattice, r, site)) r->label[site] = r->sign[site];
+    const laves__site s = laves__site_of((uint32_t)c->key[i]);
+    laves__record *r = &lattice->record[s.cell];
+    if (r->label[s.site] == LAVES__LABEL_ON && !is_exposed(lattice, s)) r->label[s.site] = r->sign[s.site];
   }
 }
 

@@ -3,9 +3,9 @@
 
 #include <string.h>
 
-/* How far, in sizes, a foot may be: the longest edge and room for projection errors. */
+/* How far, in local sizes, a foot may be: the longest edge and room for projection errors. */
 static const double foot_reach = 1.25;
-/* How far a crossing found by bisection may be moved when it is polished by projection. */
+/* How far, in local sizes, a crossing found by bisection may be moved when it is polished by projection. */
 static const double polish_reach = 1e-3;
 
 /* The crossing of the edge from a to b nearest to a, by bisection on the sign at a, as a share of the edge. */
@@ -31,26 +31,28 @@ static void set_normal(laves__foot *foot, laves__vec3 n) {
   foot->normal[2] = (float)n.z;
 }
 
-static bool nearest_crossing(const laves__frame *frame, const laves__lattice *lattice, const laves__record *r, int site,
-                             laves__foot *foot) {
-  const laves__vec3 a = laves__site_position(r->xyz, site);
+static bool nearest_crossing(const laves__frame *frame, const laves__lattice *lattice, laves__site s, laves__foot *foot) {
+  const laves__vec3 a = laves__site_place(lattice, s);
+  const int sign = laves__site_sign(lattice, s);
+  const double polish = polish_reach * laves__site_scale(lattice, s);
+  const laves__ring ring = laves__ring_of(lattice, s);
   double nearest = HUGE_VAL;
-  for (int k = 0; k < laves__c15_degree[site]; k++) {
-    const laves__site s = laves__neighbour(r, site, k);
-    if (s.cell < 0 || laves__site_sign(lattice, s) == r->sign[site]) continue;
-    const laves__vec3 b = laves__site_position(lattice->record[s.cell].xyz, s.site);
-    const laves__vec3 crossing = v3_lerp(a, b, bisect_edge(frame, a, b, r->sign[site]));
+  for (int k = 0; k < ring.count; k++) {
+    const laves__site n = laves__ring_at(&ring, k);
+    if (n.cell < 0 || laves__site_sign(lattice, n) == sign || laves__is_hull(lattice, n)) continue;
+    const laves__vec3 b = laves__site_place(lattice, n);
+    const laves__vec3 crossing = v3_lerp(a, b, bisect_edge(frame, a, b, sign));
     const double distance = v3_distance(a, crossing);
     if (distance >= nearest) continue;
     nearest = distance;
     foot->position = crossing;
-    set_normal(foot, v3_unit(v3_scale(v3_sub(b, a), -r->sign[site])));
+    set_normal(foot, v3_unit(v3_scale(v3_sub(b, a), -sign)));
   }
   foot->hint = LAVES__NO_HINT;
   if (nearest == HUGE_VAL) return false;
   laves__vec3 polished, normal;
-  if (laves__frame_project(frame, foot->position, polish_reach, &foot->hint, &polished, &normal) &&
-      v3_distance(polished, foot->position) < polish_reach) {
+  if (laves__frame_project(frame, foot->position, polish, &foot->hint, &polished, &normal) &&
+      v3_distance(polished, foot->position) < polish) {
     foot->position = polished;
     set_normal(foot, normal);
   }
@@ -59,29 +61,35 @@ static bool nearest_crossing(const laves__frame *frame, const laves__lattice *la
 
 /* The feet of some sites of a record: the nearest points of the surface or, where one can't be found, the nearest crossing of
  * the site's own edges. */
-static void find_record_feet(const laves__frame *frame, const laves__lattice *lattice, const laves__record *r, uint32_t sites,
+static void find_record_feet(const laves__frame *frame, const laves__lattice *lattice, size_t record, uint32_t sites,
                              laves__foot *feet) {
+  const laves__record *r = &lattice->record[record];
+  double reach[LAVES__C15_SITES], furthest = 0;
   laves__vec3 at[LAVES__C15_SITES] = {{0, 0, 0}};
   laves__projection answer[LAVES__C15_SITES];
   size_t count = 0;
   for (uint32_t mask = sites; mask; mask &= mask - 1) {
     const int site = __builtin_ctz(mask);
-    at[count] = laves__site_position(r->xyz, site);
+    const laves__site s = {(int32_t)record, (uint8_t)site};
+    at[count] = laves__site_place(lattice, s);
+    reach[count] = foot_reach * laves__site_scale(lattice, s);
+    furthest = fmax(furthest, reach[count]);
     answer[count++].hint = r->hint[site];
   }
-  laves__frame_project_many(frame, count, at, foot_reach, answer);
+  laves__frame_project_many(frame, count, at, furthest, answer);
   count = 0;
   for (uint32_t mask = sites; mask; mask &= mask - 1, count++) {
     const int site = __builtin_ctz(mask);
     const laves__projection *a = &answer[count];
     laves__foot *foot = &feet[site];
-    if (a->found && v3_distance(at[count], a->foot) <= foot_reach) {
+    if (a->found && v3_distance(at[count], a->foot) <= reach[count]) {
       foot->position = a->foot;
       foot->hint = a->hint;
       set_normal(foot, a->normal);
       foot->state = LAVES__FOOT_FOUND;
     } else {
-      foot->state = nearest_crossing(frame, lattice, r, site, foot) ? LAVES__FOOT_FOUND : LAVES__FOOT_NONE;
+      const laves__site s = {(int32_t)record, (uint8_t)site};
+      foot->state = nearest_crossing(frame, lattice, s, foot) ? LAVES__FOOT_FOUND : LAVES__FOOT_NONE;
     }
   }
 }
@@ -110,7 +118,7 @@ static void find_feet(void *user, size_t begin, size_t end, int worker) {
     uint32_t unknown = 0;
     for (uint32_t mask = s->wanted[i]; mask; mask &= mask - 1)
       if (laves__feet_at(s->feet, i, __builtin_ctz(mask))->state == LAVES__FOOT_UNKNOWN) unknown |= mask & -mask;
-    if (unknown) find_record_feet(s->frame, s->lattice, &s->lattice->record[i], unknown, s->feet->block[s->feet->block_of[i]]);
+    if (unknown) find_record_feet(s->frame, s->lattice, i, unknown, s->feet->block[s->feet->block_of[i]]);
   }
 }
 

@@ -2,7 +2,7 @@
 #ifndef LAVES_SNAP_FEET_H
 #define LAVES_SNAP_FEET_H
 
-#include "background/lattice.h"
+#include "background/site.h"
 
 typedef struct laves__foot {
   laves__vec3 position;

@@ -19,74 +19,59 @@
  * - K in several pieces, each with a connected complement: two parts touch at the site. It becomes one vertex for each
  *   piece, all at the same place; nothing else changes.
  * - K is the whole star (an ON site with no OUT neighbour): it is no boundary, and goes IN. */
-#include "snap/snap.h"
-
 #include <string.h>
 
-/* The slots of a star that share a face at the site with each slot, as bits. */
-typedef struct star_graph {
-  uint32_t across[LAVES__C15_MAX_STAR];
-  uint32_t all;
-} star_graph;
-
-static star_graph graph_of(int site) {
-  star_graph g = {.all = (UINT32_C(1) << laves__c15_star_size[site]) - 1};
-  for (int k = 0; k < laves__c15_star_size[site]; k++) {
-    g.across[k] = 0;
-    for (int j = 0; j < 3; j++) g.across[k] |= UINT32_C(1) << laves__c15_star[site][k].across[j];
-  }
-  return g;
-}
-
-/* The connected piece of `set` that holds its lowest bit. */
-static uint32_t first_piece(const star_graph *g, uint32_t set) {
-  uint32_t piece = set & -set, front = piece;
-  while (front) {
-    uint32_t reached = 0;
-    for (; front; front &= front - 1) reached |= g->across[__builtin_ctz(front)];
-    front = reached & set & ~piece;
-    piece |= front;
-  }
-  return piece;
-}
+#include "snap/snap.h"
+#include "snap/star_graph.h"
 
 typedef enum verdict { FAN, INTERIOR, WALL, PARTS } verdict;
 
-static verdict judge(const star_graph *g, uint32_t kept) {
+static verdict judge(const laves__star_graph *g, uint64_t kept) {
   if (kept == 0) return FAN;
   if (kept == g->all) return INTERIOR;
   bool parts = false;
-  for (uint32_t rest = kept; rest;) {
-    const uint32_t piece = first_piece(g, rest);
-    const uint32_t outside = g->all & ~piece;
-    if (first_piece(g, outside) != outside) return WALL;
+  for (uint64_t rest = kept; rest;) {
+    const uint64_t piece = laves__first_piece(g, rest);
+    const uint64_t outside = g->all & ~piece;
+    if (laves__first_piece(g, outside) != outside) return WALL;
     rest &= ~piece;
     parts |= piece != kept;
   }
   return parts ? PARTS : FAN;
 }
 
-static int count_pieces(const star_graph *g, uint32_t set) {
+static int count_pieces(const laves__star_graph *g, uint64_t set) {
   int count = 0;
-  for (; set; set &= ~first_piece(g, set)) count++;
+  for (; set; set &= ~laves__first_piece(g, set)) count++;
   return count;
 }
 
 /* Pieces of K and of its complement beyond one of each. */
-static int surplus(const star_graph *g, uint32_t kept) {
+static int surplus(const laves__star_graph *g, uint64_t kept) {
   if (kept == 0 || kept == g->all) return 0;
   return count_pieces(g, kept) + count_pieces(g, g->all & ~kept) - 2;
 }
 
 typedef struct repair {
   laves__lattice *lattice;
-  star_graph graph[LAVES__C15_SITES];
-  uint8_t slot[LAVES__C15_TETS][4];      /* where a tet is in the star of its corner k */
-  uint32_t (*kept)[LAVES__C15_SITES];    /* [capacity] laves__star_kept() of ON sites, always as it is now */
-  uint8_t (*verdicts)[LAVES__C15_SITES]; /* [capacity], those of earlier rounds where nothing changed */
-  bool *dirty;                           /* [capacity] records to judge again */
+  laves__star_graph graph[LAVES__C15_SITES]; /* of the tiling */
+  uint8_t slot[LAVES__C15_TETS][4];          /* of the tiling: where a tet is in the star of its corner k */
+  uint64_t (*kept)[LAVES__C15_SITES];        /* [capacity] laves__star_kept() of ON sites, always as it is now */
+  uint8_t (*verdicts)[LAVES__C15_SITES];     /* [capacity], those of earlier rounds where nothing changed */
+  bool *dirty;                               /* [capacity] records to judge again */
   size_t kept_capacity, verdict_capacity, dirty_capacity, known; /* records that have verdicts */
 } repair;
+
+/* A site's graph: the tiling's is known, another is made in `room`. */
+static const laves__star_graph *graph_at(const repair *w, laves__site s, laves__star_graph *room) {
+  if (!w->lattice->graph) return &w->graph[s.site];
+  laves__star_graph_make(w->lattice, s, room);
+  return room;
+}
+
+static int slot_at(const repair *w, laves__site s, laves__tet tet, int corner) {
+  return w->lattice->graph ? laves__star_slot(w->lattice, s, tet) : w->slot[tet.tet][corner];
+}
 
 static void judge_records(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
@@ -97,8 +82,9 @@ static void judge_records(void *user, size_t begin, size_t end, int worker) {
     for (int site = 0; site < LAVES__C15_SITES; site++) {
       w->verdicts[i][site] = FAN;
       if (r->label[site] != LAVES__LABEL_ON) continue;
+      laves__star_graph room;
       w->kept[i][site] = laves__star_kept(w->lattice, (int32_t)i, site);
-      w->verdicts[i][site] = (uint8_t)judge(&w->graph[site], w->kept[i][site]);
+      w->verdicts[i][site] = (uint8_t)judge(graph_at(w, (laves__site){(int32_t)i, (uint8_t)site}, &room), w->kept[i][site]);
     }
   }
 }
@@ -115,11 +101,25 @@ static bool admit_records(repair *w) {
   return true;
 }
 
-/* What changes in a record changes stars in it and in those around. */
-static void soil(const repair *w, int32_t record) {
+/* What changes in a record of the tiling changes stars in it and in those around. */
+static void soil_cell(const repair *w, int32_t record) {
   for (int k = 0; k < 27; k++) {
     const int32_t around = w->lattice->record[record].around[k];
     if (around >= 0 && (size_t)around < w->known) w->dirty[around] = true;
+  }
+}
+
+/* After a change of the labels of a site and, perhaps, of its neighbours: their stars, and those of the neighbours' neighbours.
+ */
+static void soil_around(const repair *w, laves__site s) {
+  if (!w->lattice->graph) {
+    soil_cell(w, s.cell);
+    return;
+  }
+  const laves__ring ring = laves__ring_of(w->lattice, s);
+  for (int k = 0; k < ring.count; k++) {
+    const laves__ring next = laves__ring_of(w->lattice, laves__ring_at(&ring, k));
+    for (int j = 0; j < next.count; j++) w->dirty[laves__ring_at(&next, j).cell] = true;
   }
 }
 
@@ -129,61 +129,63 @@ static void renew_kept(const repair *w, laves__site s) {
 }
 
 /* After a change of the labels of a site and, perhaps, of its neighbours. */
-static void renew_around(const repair *w, int32_t record, int site) {
-  const laves__record *r = &w->lattice->record[record];
-  for (int k = 0; k < laves__c15_degree[site]; k++) {
-    const laves__site s = laves__neighbour(r, site, k);
-    renew_kept(w, s);
-    for (int j = 0; s.cell >= 0 && j < laves__c15_degree[s.site]; j++)
-      renew_kept(w, laves__neighbour(&w->lattice->record[s.cell], s.site, j));
+static void renew_around(const repair *w, laves__site s) {
+  const laves__ring ring = laves__ring_of(w->lattice, s);
+  for (int k = 0; k < ring.count; k++) {
+    const laves__site n = laves__ring_at(&ring, k);
+    if (n.cell < 0) continue;
+    renew_kept(w, n);
+    const laves__ring next = laves__ring_of(w->lattice, n);
+    for (int j = 0; j < next.count; j++) renew_kept(w, laves__ring_at(&next, j));
   }
 }
 
 /* How much adding a tet, or taking it away, lowers the surplus around its four corners. */
-static int toggle_gain(const repair *w, int tet, const laves__site corner[4]) {
+static int toggle_gain(const repair *w, laves__tet tet, const laves__site corner[4]) {
   int gain = 0;
   for (int k = 0; k < 4; k++) {
-    const star_graph *g = &w->graph[corner[k].site];
-    const uint32_t kept = w->kept[corner[k].cell][corner[k].site];
-    gain += surplus(g, kept) - surplus(g, kept ^ UINT32_C(1) << w->slot[tet][k]);
+    laves__star_graph room;
+    const laves__star_graph *g = graph_at(w, corner[k], &room);
+    const uint64_t kept = w->kept[corner[k].cell][corner[k].site];
+    gain += surplus(g, kept) - surplus(g, kept ^ UINT64_C(1) << slot_at(w, corner[k], tet, k));
   }
   return gain;
 }
 
-static void toggle(const repair *w, laves__record *owner, int tet) {
+static void toggle(const repair *w, laves__tet tet) {
   laves__site corner[4];
-  laves__tet_sites(owner, tet, corner);
-  laves__flip_bit(owner->solid, tet);
-  for (int k = 0; k < 4; k++) w->kept[corner[k].cell][corner[k].site] ^= UINT32_C(1) << w->slot[tet][k];
-  soil(w, (int32_t)(owner - w->lattice->record));
+  laves__corners_of(w->lattice, tet, corner);
+  laves__flip_tet(w->lattice, tet, LAVES__TET_SOLID);
+  for (int k = 0; k < 4; k++) {
+    w->kept[corner[k].cell][corner[k].site] ^= UINT64_C(1) << slot_at(w, corner[k], tet, k);
+    w->dirty[corner[k].cell] = true;
+  }
+  if (!w->lattice->graph) soil_cell(w, tet.cell);
 }
 
 /* Adds or takes away the one tet with four corners ON around a site that lowers the surplus most; false when none does. */
-static bool toggle_one(const repair *w, int32_t record, int site) {
-  const laves__record *r = &w->lattice->record[record];
-  laves__record *best = NULL;
-  int best_gain = 0, best_tet = 0;
-  for (int k = 0; k < laves__c15_star_size[site]; k++) {
-    const laves__c15_star_tet star = laves__c15_star[site][k];
-    if (r->around[star.cell] < 0) continue;
-    laves__record *owner = &w->lattice->record[r->around[star.cell]];
-    if (!laves__bit(owner->solid, star.tet) && !laves__bit(owner->eligible, star.tet)) continue;
+static bool toggle_one(const repair *w, laves__site s) {
+  laves__tet best = {-1, 0};
+  int best_gain = 0;
+  for (int k = 0; k < laves__star_size(w->lattice, s); k++) {
+    const laves__tet tet = laves__star_at(w->lattice, s, k).tet;
+    if (tet.cell < 0) continue;
+    if (!laves__tet_is(w->lattice, tet, LAVES__TET_SOLID) && !laves__tet_is(w->lattice, tet, LAVES__TET_ELIGIBLE)) continue;
     laves__site corner[4];
-    laves__tet_sites(owner, star.tet, corner);
+    laves__corners_of(w->lattice, tet, corner);
     bool on = true;
     for (int j = 0; j < 4; j++) on &= corner[j].cell >= 0 && laves__site_label(w->lattice, corner[j]) == LAVES__LABEL_ON;
     if (!on) continue;
-    const int gain = toggle_gain(w, star.tet, corner);
+    const int gain = toggle_gain(w, tet, corner);
     if (gain <= best_gain) continue;
     best_gain = gain;
-    best = owner;
-    best_tet = star.tet;
+    best = tet;
   }
-  if (best) toggle(w, best, best_tet);
-  return best != NULL;
+  if (best.cell >= 0) toggle(w, best);
+  return best.cell >= 0;
 }
 
-/* Gives every cell around a record one of its own, so that labels can be changed there. */
+/* Gives every cell around a record of the tiling one of its own, so that labels can be changed there. */
 static bool make_room(laves__lattice *lattice, const int32_t centre[3]) {
   for (int dz = -1; dz <= 1; dz++)
     for (int dy = -1; dy <= 1; dy++)
@@ -195,24 +197,26 @@ static bool make_room(laves__lattice *lattice, const int32_t centre[3]) {
 }
 
 /* Takes an ON site out; the IN sites around go ON. */
-static void trim(laves__lattice *lattice, int32_t record, int site) {
-  laves__record *r = &lattice->record[record];
-  r->label[site] = LAVES__LABEL_OUT;
-  for (int k = 0; k < laves__c15_degree[site]; k++) {
-    const laves__site s = laves__neighbour(r, site, k);
-    if (laves__site_label(lattice, s) == LAVES__LABEL_IN) lattice->record[s.cell].label[s.site] = LAVES__LABEL_ON;
+static void trim(laves__lattice *lattice, laves__site s) {
+  lattice->record[s.cell].label[s.site] = LAVES__LABEL_OUT;
+  const laves__ring ring = laves__ring_of(lattice, s);
+  for (int k = 0; k < ring.count; k++) {
+    const laves__site n = laves__ring_at(&ring, k);
+    if (laves__site_label(lattice, n) == LAVES__LABEL_IN) lattice->record[n.cell].label[n.site] = LAVES__LABEL_ON;
   }
 }
 
 bool laves__part_site(const laves__lattice *lattice, int32_t record, int site, laves__parted *parted) {
-  const uint32_t kept = laves__star_kept(lattice, record, site);
-  const star_graph graph = graph_of(site);
+  const laves__site s = {record, (uint8_t)site};
+  laves__star_graph graph;
+  laves__star_graph_make(lattice, s, &graph);
   if (!laves__grow(lattice->context, &parted->item, &parted->capacity, parted->count + 1, sizeof *parted->item)) return false;
   laves__parted_site *item = &parted->item[parted->count++];
   memset(item, 0, sizeof *item);
-  item->site = (uint32_t)record * LAVES__C15_SITES + (uint32_t)site;
-  for (uint32_t rest = kept; rest;) {
-    const uint32_t piece = first_piece(&graph, rest);
+  item->site = laves__site_id(s);
+  for (uint64_t rest = laves__star_kept(lattice, record, site); rest;) {
+    const uint64_t piece = laves__first_piece(&graph, rest);
+    LAVES_ASSERT(item->fan_count < LAVES__FAN_LIMIT);
     item->fan[item->fan_count++] = piece;
     rest &= ~piece;
   }
@@ -223,7 +227,7 @@ bool laves__part_site(const laves__lattice *lattice, int32_t record, int site, l
 static bool make_room_at_walls(repair *w) {
   laves__lattice *lattice = w->lattice;
   const size_t records = w->known;
-  for (size_t i = 0; i < records; i++) {
+  for (size_t i = 0; i < records && !lattice->graph; i++) {
     bool wall = false;
     for (int site = 0; site < LAVES__C15_SITES; site++) wall |= w->verdicts[i][site] == WALL;
     if (wall &&
@@ -235,22 +239,23 @@ static bool make_room_at_walls(repair *w) {
 }
 
 /* Acts at one site; *again: something changed. False when memory is short. */
-static bool mend_site(const repair *w, int32_t record, int site, laves__parted *parted, size_t *pinches, bool *again) {
+static bool mend_site(const repair *w, laves__site s, laves__parted *parted, size_t *pinches, bool *again) {
   laves__lattice *lattice = w->lattice;
-  const verdict found = (verdict)w->verdicts[record][site];
-  while (found != INTERIOR && toggle_one(w, record, site)) *again = true;
-  const bool on = lattice->record[record].label[site] == LAVES__LABEL_ON; /* earlier changes may have ended that */
-  const verdict now = on ? judge(&w->graph[site], w->kept[record][site]) : FAN;
+  const verdict found = (verdict)w->verdicts[s.cell][s.site];
+  while (found != INTERIOR && toggle_one(w, s)) *again = true;
+  const bool on = laves__site_label(lattice, s) == LAVES__LABEL_ON; /* earlier changes may have ended that */
+  laves__star_graph room;
+  const verdict now = on ? judge(graph_at(w, s, &room), w->kept[s.cell][s.site]) : FAN;
   if (now == INTERIOR) {
-    lattice->record[record].label[site] = LAVES__LABEL_IN;
+    lattice->record[s.cell].label[s.site] = LAVES__LABEL_IN;
   } else if (now == WALL && found == WALL) { /* only there room was made */
-    trim(lattice, record, site);
+    trim(lattice, s);
     ++*pinches;
   } else {
-    return now != PARTS || laves__part_site(lattice, record, site, parted);
+    return now != PARTS || laves__part_site(lattice, s.cell, s.site, parted);
   }
-  renew_around(w, record, site);
-  soil(w, record);
+  renew_around(w, s);
+  soil_around(w, s);
   *again = true;
   return true;
 }
@@ -266,10 +271,8 @@ static laves_result repair_round(repair *w, laves__parted *parted, size_t *pinch
   const size_t records = w->known;
   if (!make_room_at_walls(w)) return laves__fail_memory(context, error);
   for (size_t id = 0; id < records * LAVES__C15_SITES; id++) {
-    const size_t record = id / LAVES__C15_SITES;
-    const int site = (int)(id % LAVES__C15_SITES);
-    if (w->verdicts[record][site] != FAN && !mend_site(w, (int32_t)record, site, parted, pinches, again))
-      return laves__fail_memory(context, error);
+    const laves__site s = laves__site_of((uint32_t)id);
+    if (w->verdicts[s.cell][s.site] != FAN && !mend_site(w, s, parted, pinches, again)) return laves__fail_memory(context, error);
   }
   return LAVES_OK;
 }
@@ -277,7 +280,7 @@ static laves_result repair_round(repair *w, laves__parted *parted, size_t *pinch
 laves_result laves__pinch_repair(laves__lattice *lattice, laves__parted *parted, size_t *pinches, laves_error *error) {
   repair w = {.lattice = lattice};
   for (int site = 0; site < LAVES__C15_SITES; site++) {
-    w.graph[site] = graph_of(site);
+    if (!lattice->graph) laves__star_graph_make(lattice, (laves__site){0, (uint8_t)site}, &w.graph[site]);
     for (int k = 0; k < laves__c15_star_size[site]; k++)
       w.slot[laves__c15_star[site][k].tet][laves__c15_star[site][k].corner] = (uint8_t)k;
   }

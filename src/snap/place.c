@@ -20,6 +20,7 @@ static bool has_surface_site(const laves__record *r) {
 
 /* Records for the inner cells that the layer reaches. */
 static bool widen_records(laves__lattice *lattice) {
+  if (lattice->graph) return true; /* it has all records */
   const size_t before = lattice->record_count;
   for (size_t i = 0; i < before; i++) {
     if (!has_surface_site(&lattice->record[i])) continue;
@@ -55,10 +56,10 @@ static bool reach_first(laves__lattice *lattice, const laves__cuts *cuts, int de
   for (size_t i = 0; i < lattice->record_count; i++)
     for (int site = 0; site < LAVES__C15_SITES; site++) {
       if (lattice->record[i].label[site] != LAVES__LABEL_ON) continue;
-      const uint32_t kept = laves__star_kept(lattice, (int32_t)i, site);
-      const bool whole = kept == (UINT32_C(1) << laves__c15_star_size[site]) - 1;
-      const uint32_t id = (uint32_t)i * LAVES__C15_SITES + (uint32_t)site;
-      if (kept && whole == (depth == 1) && !reach(lattice, queue, id, depth)) return false;
+      const laves__site s = {(int32_t)i, (uint8_t)site};
+      const uint64_t kept = laves__star_kept(lattice, (int32_t)i, site);
+      const bool whole = kept == laves__whole_star(lattice, s);
+      if (kept && whole == (depth == 1) && !reach(lattice, queue, laves__site_id(s), depth)) return false;
     }
   for (size_t t = 0; cuts && t < cuts->tet_count; t++)
     for (int k = 0; k < 4; k++) {
@@ -77,15 +78,16 @@ static bool measure_depths(laves__lattice *lattice, const laves__cuts *cuts, siz
   site_queue queue = {.context = lattice->context};
   bool memory = reach_first(lattice, cuts, 0, &queue) && reach_first(lattice, cuts, 1, &queue);
   for (size_t head = 0; memory && head < queue.count; head++) {
-    const laves__record *r = &lattice->record[queue.id[head] / LAVES__C15_SITES];
-    const int site = (int)(queue.id[head] % LAVES__C15_SITES);
-    if (r->depth[site] == LAVES__DEPTH_MAX) break;
-    for (int k = 0; memory && k < laves__c15_degree[site]; k++) {
-      const laves__site s = laves__neighbour(r, site, k);
+    const laves__site at = laves__site_of(queue.id[head]);
+    const int depth = lattice->record[at.cell].depth[at.site];
+    if (depth == LAVES__DEPTH_MAX) break;
+    const laves__ring ring = laves__ring_of(lattice, at);
+    for (int k = 0; memory && k < ring.count; k++) {
+      const laves__site s = laves__ring_at(&ring, k);
       if (s.cell < 0) continue;
       const laves__record *other = &lattice->record[s.cell];
-      if (other->label[s.site] != LAVES__LABEL_IN || other->depth[s.site] <= r->depth[site] + 1) continue;
-      memory = reach(lattice, &queue, (uint32_t)s.cell * LAVES__C15_SITES + s.site, r->depth[site] + 1);
+      if (other->label[s.site] != LAVES__LABEL_IN || other->depth[s.site] <= depth + 1) continue;
+      memory = reach(lattice, &queue, laves__site_id(s), depth + 1);
     }
   }
   *vertex_count = queue.count;
@@ -94,18 +96,37 @@ static bool measure_depths(laves__lattice *lattice, const laves__cuts *cuts, siz
 }
 
 /* Which tets of each cell are stamped and which belong to the layer. One byte for each site that the cell's tets can use
- * says all that decides: 128 OUT, 64 IN, and the depth (at most 63) in the low bits. */
+ * says all that decides: 128 OUT, 64 IN, and the depth (at most 63) in the low bits. Of a graph, one tet after the other. */
 enum { CODE_OUT = 128, CODE_IN = 64, CODE_DEPTH = 63 };
+
+static uint8_t code_of(const laves__record *r, int site) {
+  const uint8_t depth = r->depth[site] < CODE_DEPTH ? r->depth[site] : CODE_DEPTH;
+  return r->label[site] == LAVES__LABEL_OUT ? CODE_OUT : r->label[site] == LAVES__LABEL_IN ? CODE_IN | depth : depth;
+}
 
 static void code_cell(const laves__lattice *lattice, int32_t cell, uint8_t code[LAVES__C15_SITES]) {
   if (cell < 0) {
     memset(code, cell == LAVES__OUT ? CODE_OUT : CODE_IN | CODE_DEPTH, LAVES__C15_SITES);
     return;
   }
-  const laves__record *r = &lattice->record[cell];
-  for (int site = 0; site < LAVES__C15_SITES; site++) {
-    const uint8_t depth = r->depth[site] < CODE_DEPTH ? r->depth[site] : CODE_DEPTH;
-    code[site] = r->label[site] == LAVES__LABEL_OUT ? CODE_OUT : r->label[site] == LAVES__LABEL_IN ? CODE_IN | depth : depth;
+  for (int site = 0; site < LAVES__C15_SITES; site++) code[site] = code_of(&lattice->record[cell], site);
+}
+
+static void sort_graph_tets(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const laves__lattice *lattice = user;
+  const laves__graph *g = lattice->graph;
+  for (size_t t = begin; t < end; t++) {
+    uint8_t any = 0, least = CODE_DEPTH;
+    for (int k = 0; k < 4; k++) {
+      const laves__site s = laves__site_of((uint32_t)g->tet[t][k]);
+      const uint8_t c = code_of(&lattice->record[s.cell], s.site);
+      any |= c;
+      if ((c & CODE_DEPTH) < least) least = c & CODE_DEPTH;
+    }
+    g->flags[t] &= (uint8_t) ~(LAVES__TET_LAYER | LAVES__TET_STAMPED);
+    if (any & CODE_OUT || (!(any & CODE_IN) && !(g->flags[t] & LAVES__TET_SOLID))) continue;
+    g->flags[t] |= least <= LAVES__DEPTH_MOVES ? LAVES__TET_LAYER : LAVES__TET_STAMPED;
   }
 }
 
@@ -133,8 +154,19 @@ static void sort_tets(void *user, size_t begin, size_t end, int worker) {
   }
 }
 
-static size_t count_bits(const uint64_t set[3]) {
-  return (size_t)(__builtin_popcountll(set[0]) + __builtin_popcountll(set[1]) + __builtin_popcountll(set[2]));
+static bool sort_all_tets(laves__lattice *lattice) {
+  if (lattice->graph)
+    return laves__parallel_for(lattice->context, "snap", lattice->graph->tet_count, 1024, sort_graph_tets, lattice);
+  return laves__parallel_for(lattice->context, "snap", lattice->record_count, 16, sort_tets, lattice);
+}
+
+static size_t count_layer_tets(const laves__lattice *lattice) {
+  const laves__graph *g = lattice->graph;
+  size_t count = 0;
+  for (size_t t = 0; g && t < g->tet_count; t++) count += (g->flags[t] & LAVES__TET_LAYER) != 0;
+  for (size_t i = 0; !g && i < lattice->record_count; i++)
+    for (int word = 0; word < 3; word++) count += (size_t)__builtin_popcountll(lattice->record[i].layer[word]);
+  return count;
 }
 
 static laves__parted_site *find_parted(const laves__parted *parted, uint32_t id) {
@@ -164,14 +196,16 @@ static size_t number_vertices(laves__lattice *lattice, laves__parted *parted, la
     laves__record *r = &lattice->record[i];
     for (int site = 0; site < LAVES__C15_SITES; site++) {
       if (r->depth[site] > LAVES__DEPTH_MAX) continue;
-      const uint32_t id = (uint32_t)i * LAVES__C15_SITES + (uint32_t)site;
+      const laves__site s = {(int32_t)i, (uint8_t)site};
+      const uint32_t id = laves__site_id(s);
       laves__parted_site *fans = r->depth[site] == 0 && parted->count ? find_parted(parted, id) : NULL;
       r->vertex[site] = fans ? -2 - (int32_t)(fans - parted->item) : (int32_t)next;
       for (int fan = 0; fan < (fans ? fans->fan_count : 1); fan++) {
         layer->depth[next] = r->depth[site];
         layer->hint[next] = r->hint[site];
         layer->origin[next] = fan == 0 ? id : LAVES__NO_ORIGIN;
-        layer->position[next] = laves__site_position(r->xyz, site);
+        layer->position[next] = laves__site_place(lattice, s);
+        if (layer->scale) layer->scale[next] = (float)laves__site_scale(lattice, s);
         if (fans) fans->vertex[fan] = (int32_t)next;
         next++;
       }
@@ -181,10 +215,8 @@ static size_t number_vertices(laves__lattice *lattice, laves__parted *parted, la
 }
 
 /* The vertex of a parted site that a tet uses: that of the fan which holds the tet. */
-static int32_t parted_vertex(const laves__parted_site *parted, int tet, int corner_cell) {
-  const int site = (int)(parted->site % LAVES__C15_SITES);
-  int slot = 0;
-  while (laves__c15_star[site][slot].tet != tet || laves__c15_star[site][slot].cell != 26 - corner_cell) slot++;
+static int32_t parted_vertex(const laves__lattice *lattice, const laves__parted_site *parted, laves__tet tet) {
+  const int slot = laves__star_slot(lattice, laves__site_of(parted->site), tet);
   int fan = 0;
   while (!(parted->fan[fan] >> slot & 1)) fan++;
   return parted->vertex[fan];
@@ -193,21 +225,19 @@ static int32_t parted_vertex(const laves__parted_site *parted, int tet, int corn
 /* The whole tets; returns how many. */
 static size_t number_tets(const laves__lattice *lattice, const laves__parted *parted, laves__layer *layer) {
   size_t next = 0;
-  for (size_t i = 0; i < lattice->record_count; i++) {
-    const laves__record *r = &lattice->record[i];
-    for (int word = 0; word < 3; word++)
-      for (uint64_t set = r->layer[word]; set; set &= set - 1) {
-        const int tet = 64 * word + __builtin_ctzll(set);
-        for (int k = 0; k < 4; k++) {
-          const laves__c15_corner corner = laves__c15_tet[tet][k];
-          const int cell = 13 + (corner.shift & 1) + 3 * ((corner.shift >> 1) & 1) + 9 * (corner.shift >> 2);
-          int32_t vertex = lattice->record[r->around[cell]].vertex[corner.site];
-          if (vertex < 0) vertex = parted_vertex(&parted->item[-2 - vertex], tet, cell);
-          layer->tet[next][k] = vertex;
-        }
-        next++;
+  const size_t chunks = laves__chunk_count(lattice);
+  for (size_t chunk = 0; chunk < chunks; chunk++)
+    for (int i = 0, size = laves__chunk_size(lattice, chunk); i < size; i++) {
+      const laves__tet tet = {(int32_t)chunk, (uint8_t)i};
+      if (!laves__tet_is(lattice, tet, LAVES__TET_LAYER)) continue;
+      laves__site corner[4];
+      laves__corners_of(lattice, tet, corner);
+      for (int k = 0; k < 4; k++) {
+        const int32_t vertex = lattice->record[corner[k].cell].vertex[corner[k].site];
+        layer->tet[next][k] = vertex >= 0 ? vertex : parted_vertex(lattice, &parted->item[-2 - vertex], tet);
       }
-  }
+      next++;
+    }
   return next;
 }
 
@@ -264,11 +294,11 @@ void laves__cuts_free(laves__cuts *cuts) {
 laves_result laves__layer_build(const laves__feet *feet, laves__lattice *lattice, laves__parted *parted, const laves__cuts *cuts,
                                 laves__layer *layer, laves_error *error) {
   laves_context *context = lattice->context;
-  size_t vertex_count = 0, tet_count = 0;
+  size_t vertex_count = 0;
   if (!widen_records(lattice) || !measure_depths(lattice, cuts, &vertex_count)) return laves__fail_memory(context, error);
   for (size_t i = 0; i < parted->count; i++) vertex_count += (size_t)parted->item[i].fan_count - 1;
-  if (!laves__parallel_for(context, "snap", lattice->record_count, 16, sort_tets, lattice)) return laves__fail_cancelled(error);
-  for (size_t i = 0; i < lattice->record_count; i++) tet_count += count_bits(lattice->record[i].layer);
+  if (!sort_all_tets(lattice)) return laves__fail_cancelled(error);
+  const size_t tet_count = count_layer_tets(lattice);
   const size_t cut_vertices = cuts ? cuts->vertex_count : 0, pieces = cuts ? cuts->tet_count : 0;
   if (tet_count + pieces > INT32_MAX)
     return laves__fail(error, LAVES_ERROR_OPTION,
@@ -276,6 +306,8 @@ laves_result laves__layer_build(const laves__feet *feet, laves__lattice *lattice
                        tet_count + pieces);
   laves_result result = laves__layer_create(context, vertex_count + cut_vertices, tet_count + pieces, layer, error);
   if (result != LAVES_OK) return result;
+  if (lattice->graph && !(layer->scale = laves__alloc(context, layer->vertex_count, sizeof *layer->scale)))
+    return laves__fail_memory(context, error);
   const size_t at_sites = number_vertices(lattice, parted, layer), whole = number_tets(lattice, parted, layer);
   LAVES_ASSERT(at_sites == vertex_count && whole == tet_count);
   place_vertices(lattice, feet, at_sites, layer);

@@ -6,9 +6,7 @@ static laves__vec3 *start_positions(const laves__lattice *lattice, const laves__
   laves__vec3 *start = laves__alloc(lattice->context, layer->vertex_count, sizeof *start);
   for (size_t v = 0; start && v < layer->vertex_count; v++) {
     const uint32_t id = layer->origin[v];
-    start[v] = id == LAVES__NO_ORIGIN
-                   ? start[v - 1]
-                   : laves__site_position(lattice->record[id / LAVES__C15_SITES].xyz, (int)(id % LAVES__C15_SITES));
+    start[v] = id == LAVES__NO_ORIGIN ? start[v - 1] : laves__site_place(lattice, laves__site_of(id));
   }
   return start;
 }

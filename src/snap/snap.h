@@ -11,11 +11,14 @@
  *     pinch.c   places where the result would touch itself are trimmed or parted, so that the boundary is a manifold
  *     speck.c   parts of a few tets that hang together with nothing are dropped
  *     place.c   the boundary layer as a mesh of its own, ON vertices moved to the surface
+ *
+ * All of this works on the tiling and on a graded background alike: background/site.h is where they ask. What is a length in
+ * sizes is one in local sizes then, laves__site_scale() times the size.
  */
 #ifndef LAVES_SNAP_SNAP_H
 #define LAVES_SNAP_SNAP_H
 
-#include "background/lattice.h"
+#include "background/site.h"
 #include "mesh/layer.h"
 #include "snap/feet.h"
 
@@ -42,18 +45,21 @@ laves_result laves__thin_cover(const laves__frame *frame, laves__lattice *lattic
 /* And at tips and ridges. All ON sites must have been asked for their feet. */
 laves_result laves__tip_cover(const laves__frame *frame, laves__lattice *lattice, laves__feet *feet, laves_error *error);
 
-/* Whether a tet with these corners, all on the surface, has a shape that improvement can work with. */
-bool laves__solid_shape(const laves__vec3 p[4]);
+/* Whether a tet with these corners, all on the surface, has a shape that improvement can work with. `scale`: the local size. */
+bool laves__solid_shape(const laves__vec3 p[4], double scale);
 
-/* The third step: `solid` and `eligible` of all records. All ON sites must have been asked for their feet. */
+/* The third step: which tets are LAVES__TET_SOLID and LAVES__TET_ELIGIBLE. All ON sites must have been asked for their feet. */
 laves_result laves__find_solid(const laves__frame *frame, laves__lattice *lattice, const laves__feet *feet, laves_error *error);
+
+/* Fans share no edge of the link, each of whose tets has three. */
+enum { LAVES__FAN_LIMIT = LAVES__STAR_LIMIT / 2 };
 
 /* A site at which the kept tets form more than one fan; each fan becomes a vertex of its own. */
 typedef struct laves__parted_site {
   uint32_t site; /* record * LAVES__C15_SITES + site */
   int fan_count;
-  uint32_t fan[16];   /* bits of the site's star */
-  int32_t vertex[16]; /* in the layer */
+  uint64_t fan[LAVES__FAN_LIMIT];   /* bits of the site's star */
+  int32_t vertex[LAVES__FAN_LIMIT]; /* in the layer */
 } laves__parted_site;
 
 typedef struct laves__parted {

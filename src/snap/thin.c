@@ -30,18 +30,22 @@ typedef struct thinning {
 } thinning;
 
 /* Whether phi around a site is far from linear. The star of a site is nearly isotropic, so the slope is a weighted sum. */
-static bool is_suspect(const thinning *t, const laves__record *r, int site) {
+static bool is_suspect(const thinning *t, laves__site s) {
   const laves__lattice *lattice = t->lattice;
-  if (!isfinite(r->phi[site]) || (t->frame->oracle->is_distance && !(fabs(r->phi[site]) < reach))) return false;
-  laves__vec3 at[LAVES__C15_MAX_DEGREE], slope = {0, 0, 0};
-  double rise[LAVES__C15_MAX_DEGREE], square = 0;
+  const double phi = lattice->record[s.cell].phi[s.site];
+  if (!isfinite(phi)) return false;
+  const double scale = laves__site_scale(lattice, s);
+  if (t->frame->oracle->is_distance && !(fabs(phi) < reach * scale)) return false;
+  laves__vec3 at[LAVES__LINK_LIMIT], slope = {0, 0, 0};
+  double rise[LAVES__LINK_LIMIT], square = 0;
   int count = 0;
-  const laves__vec3 p = laves__site_position(r->xyz, site);
-  for (int k = 0; k < laves__c15_degree[site]; k++) {
-    const laves__site s = laves__neighbour(r, site, k);
-    if (s.cell < 0 || !isfinite(lattice->record[s.cell].phi[s.site])) continue;
-    at[count] = v3_sub(laves__site_position(lattice->record[s.cell].xyz, s.site), p);
-    rise[count] = lattice->record[s.cell].phi[s.site] - r->phi[site];
+  const laves__vec3 p = laves__site_place(lattice, s);
+  const laves__ring ring = laves__ring_of(lattice, s);
+  for (int k = 0; k < ring.count; k++) {
+    const laves__site n = laves__ring_at(&ring, k);
+    if (n.cell < 0 || !isfinite(lattice->record[n.cell].phi[n.site])) continue;
+    at[count] = v3_sub(laves__site_place(lattice, n), p);
+    rise[count] = lattice->record[n.cell].phi[n.site] - phi;
     slope = v3_mad(slope, at[count], rise[count]);
     square += v3_norm2(at[count]);
     count++;
@@ -54,7 +58,7 @@ static bool is_suspect(const thinning *t, const laves__record *r, int site) {
     misfit += d * d;
   }
   const double steep = v3_norm2(slope);
-  return misfit > misfit_min * misfit_min * count * steep;
+  return misfit > misfit_min * misfit_min * scale * scale * count * steep;
 }
 
 static void find_suspects(void *user, size_t begin, size_t end, int worker) {
@@ -63,35 +67,35 @@ static void find_suspects(void *user, size_t begin, size_t end, int worker) {
   for (size_t i = begin; i < end; i++) {
     uint32_t mask = 0;
     for (int site = 0; site < LAVES__C15_SITES; site++)
-      if (is_suspect(t, &t->lattice->record[i], site)) mask |= UINT32_C(1) << site;
+      if (is_suspect(t, (laves__site){(int32_t)i, (uint8_t)site})) mask |= UINT32_C(1) << site;
     t->suspects[i] = mask;
   }
 }
 
 /* The end of an edge: its foot when ON, else the site. Outwards is away from the solid, or from the foot of an inner site
  * towards it. False when the site has no foot near. */
-static bool end_of_edge(const thinning *t, int32_t record, int site, laves__vec3 *end, laves__vec3 *outwards) {
-  const laves__foot *foot = laves__feet_get(t->feet, record, site);
+static bool end_of_edge(const thinning *t, laves__site s, laves__vec3 *end, laves__vec3 *outwards) {
+  const laves__foot *foot = laves__feet_get(t->feet, s.cell, s.site);
   if (!foot) return false;
-  const laves__record *r = &t->lattice->record[record];
-  const laves__vec3 p = laves__site_position(r->xyz, site);
-  if (!(v3_distance(p, foot->position) < reach)) return false;
-  *end = r->label[site] == LAVES__LABEL_ON ? foot->position : p;
+  const laves__vec3 p = laves__site_place(t->lattice, s);
+  if (!(v3_distance(p, foot->position) < reach * laves__site_scale(t->lattice, s))) return false;
+  *end = laves__site_label(t->lattice, s) == LAVES__LABEL_ON ? foot->position : p;
   *outwards = v3(foot->normal[0], foot->normal[1], foot->normal[2]);
   return true;
 }
 
 /* Whether an edge passes through a wall: see the drawing. */
-static bool passes_through(const thinning *t, const laves__record *r, int site, int32_t record, laves__site other) {
-  const laves__label a = (laves__label)r->label[site], b = laves__site_label(t->lattice, other);
+static bool passes_through(const thinning *t, laves__site s, laves__site other) {
+  const laves__label a = laves__site_label(t->lattice, s), b = laves__site_label(t->lattice, other);
   if (a == LAVES__LABEL_ON && b == LAVES__LABEL_ON) return false;
-  if (r->sign[site] != laves__site_sign(t->lattice, other)) return false;
+  if (laves__site_sign(t->lattice, s) != laves__site_sign(t->lattice, other)) return false;
   if (a != LAVES__LABEL_OUT && b != LAVES__LABEL_OUT) return false;
   laves__vec3 from, to, n_from, n_to;
-  if (!end_of_edge(t, record, site, &from, &n_from) || !end_of_edge(t, other.cell, other.site, &to, &n_to)) return false;
+  if (!end_of_edge(t, s, &from, &n_from) || !end_of_edge(t, other, &to, &n_to)) return false;
   if (v3_dot(n_from, n_to) > opposed) return false;
+  const double scale = 0.5 * (laves__site_scale(t->lattice, s) + laves__site_scale(t->lattice, other));
   for (int i = 0; i < SAMPLES; i++)
-    if (laves__lies_inside(t->frame, v3_lerp(from, to, (i + 1.0) / (SAMPLES + 1)), depth_min)) return true;
+    if (laves__lies_inside(t->frame, v3_lerp(from, to, (i + 1.0) / (SAMPLES + 1)), depth_min * scale)) return true;
   return false;
 }
 
@@ -103,11 +107,12 @@ static void look_at_edges(void *user, size_t begin, size_t end, int worker) {
     const laves__record *r = &t->lattice->record[i];
     t->turns_on[i] = 0;
     for (uint32_t mask = t->suspects[i]; mask; mask &= mask - 1) {
-      const int site = __builtin_ctz(mask);
-      for (int k = 0; k < laves__c15_degree[site] && r->label[site] != LAVES__LABEL_ON; k++) {
-        const laves__site s = laves__neighbour(r, site, k);
-        if (s.cell < 0 || !(t->suspects[s.cell] >> s.site & 1) || !passes_through(t, r, site, (int32_t)i, s)) continue;
-        t->turns_on[i] |= UINT32_C(1) << site;
+      const laves__site s = {(int32_t)i, (uint8_t)__builtin_ctz(mask)};
+      const laves__ring ring = laves__ring_of(t->lattice, s);
+      for (int k = 0; k < ring.count && r->label[s.site] != LAVES__LABEL_ON; k++) {
+        const laves__site n = laves__ring_at(&ring, k);
+        if (n.cell < 0 || !(t->suspects[n.cell] >> n.site & 1) || !passes_through(t, s, n)) continue;
+        t->turns_on[i] |= mask & -mask;
         break;
       }
     }

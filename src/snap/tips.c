@@ -26,16 +26,18 @@ typedef struct tips {
 } tips;
 
 /* Whether an outside site has enough neighbours ON, one of them fresh after the first round. */
-static bool is_candidate(const tips *t, const laves__record *r, int site) {
-  if (r->label[site] != LAVES__LABEL_OUT || r->sign[site] < 0) return false;
-  if (t->frame->oracle->is_distance && !(r->phi[site] < reach)) return false;
+static bool is_candidate(const tips *t, laves__site s) {
+  const laves__record *r = &t->lattice->record[s.cell];
+  if (r->label[s.site] != LAVES__LABEL_OUT || r->sign[s.site] < 0 || laves__is_hull(t->lattice, s)) return false;
+  if (t->frame->oracle->is_distance && !(r->phi[s.site] < reach * laves__site_scale(t->lattice, s))) return false;
   int on = 0;
   bool fresh = t->first_round;
-  for (int k = 0; k < laves__c15_degree[site]; k++) {
-    const laves__site s = laves__neighbour(r, site, k);
-    if (s.cell < 0 || laves__site_label(t->lattice, s) != LAVES__LABEL_ON) continue;
+  const laves__ring ring = laves__ring_of(t->lattice, s);
+  for (int k = 0; k < ring.count; k++) {
+    const laves__site n = laves__ring_at(&ring, k);
+    if (n.cell < 0 || laves__site_label(t->lattice, n) != LAVES__LABEL_ON) continue;
     on++;
-    fresh |= t->fresh[s.cell] >> s.site & 1;
+    fresh |= t->fresh[n.cell] >> n.site & 1;
   }
   return on >= NEIGHBOURS_MIN && fresh;
 }
@@ -46,7 +48,7 @@ static void find_candidates(void *user, size_t begin, size_t end, int worker) {
   for (size_t i = begin; i < end; i++) {
     t->wanted[i] = 0;
     for (int site = 0; site < LAVES__C15_SITES; site++)
-      if (is_candidate(t, &t->lattice->record[i], site)) t->wanted[i] |= UINT32_C(1) << site;
+      if (is_candidate(t, (laves__site){(int32_t)i, (uint8_t)site})) t->wanted[i] |= UINT32_C(1) << site;
   }
 }
 
@@ -57,22 +59,22 @@ static double apex_height(const laves__vec3 p[4], int corner) {
 }
 
 /* Whether the tet of a star, with the other three corners ON at their feet, reaches further into the solid. */
-static bool tet_reaches(const tips *t, const laves__record *r, const laves__c15_star_tet *star, laves__vec3 foot) {
-  if (r->around[star->cell] < 0) return false;
+static bool tet_reaches(const tips *t, laves__star_tet star, laves__vec3 foot, double scale) {
+  if (star.tet.cell < 0) return false;
   laves__site corner[4];
-  laves__tet_sites(&t->lattice->record[r->around[star->cell]], star->tet, corner);
+  laves__corners_of(t->lattice, star.tet, corner);
   laves__vec3 p[4];
   for (int k = 0; k < 4; k++) {
     p[k] = foot;
-    if (k == star->corner) continue;
+    if (k == star.corner) continue;
     if (corner[k].cell < 0 || laves__site_label(t->lattice, corner[k]) != LAVES__LABEL_ON) return false;
     const laves__foot *other = laves__feet_get(t->feet, corner[k].cell, corner[k].site);
-    if (!other || v3_distance(other->position, foot) < advance_min) return false;
+    if (!other || v3_distance(other->position, foot) < advance_min * scale) return false;
     p[k] = other->position;
   }
-  if (!laves__solid_shape(p) || apex_height(p, star->corner) < height_min) return false;
+  if (!laves__solid_shape(p, scale) || apex_height(p, star.corner) < height_min * scale) return false;
   const laves__vec3 middle = v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25);
-  return laves__lies_inside(t->frame, middle, depth_min);
+  return laves__lies_inside(t->frame, middle, depth_min * scale);
 }
 
 /* Keeps of `wanted` only the sites that shall go ON. Reads labels, writes to the record's own place. */
@@ -80,14 +82,14 @@ static void look_at_sites(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const tips *t = user;
   for (size_t i = begin; i < end; i++) {
-    const laves__record *r = &t->lattice->record[i];
     for (uint32_t mask = t->wanted[i]; mask; mask &= mask - 1) {
-      const int site = __builtin_ctz(mask);
-      const laves__foot *foot = laves__feet_get(t->feet, (int32_t)i, site);
+      const laves__site s = {(int32_t)i, (uint8_t)__builtin_ctz(mask)};
+      const double scale = laves__site_scale(t->lattice, s);
+      const laves__foot *foot = laves__feet_get(t->feet, s.cell, s.site);
       bool reaches = false;
-      if (foot && v3_distance(foot->position, laves__site_position(r->xyz, site)) < reach)
-        for (int k = 0; k < laves__c15_star_size[site] && !reaches; k++)
-          reaches = tet_reaches(t, r, &laves__c15_star[site][k], foot->position);
+      if (foot && v3_distance(foot->position, laves__site_place(t->lattice, s)) < reach * scale)
+        for (int k = 0, size = laves__star_size(t->lattice, s); k < size && !reaches; k++)
+          reaches = tet_reaches(t, laves__star_at(t->lattice, s, k), foot->position, scale);
       if (!reaches) t->wanted[i] &= ~(mask & -mask);
     }
   }

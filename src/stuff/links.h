@@ -2,7 +2,7 @@
 #ifndef LAVES_STUFF_LINKS_H
 #define LAVES_STUFF_LINKS_H
 
-#include "background/lattice.h"
+#include "background/site.h"
 
 typedef struct laves__links {
   uint8_t slot[LAVES__C15_TETS][4][4];                      /* corner j is neighbour slot[t][i][j] of corner i of tet t */
@@ -13,11 +13,5 @@ typedef struct laves__links {
 } laves__links;
 
 void laves__links_fill(laves__links *links);
-
-/* A site's number among all of the records. */
-static inline uint32_t laves__site_id(laves__site s) { return (uint32_t)s.cell * LAVES__C15_SITES + s.site; }
-static inline laves__site laves__site_of(uint32_t id) {
-  return (laves__site){(int32_t)(id / LAVES__C15_SITES), (uint8_t)(id % LAVES__C15_SITES)};
-}
 
 #endif

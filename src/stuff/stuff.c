@@ -63,6 +63,7 @@ laves_result laves__stuff(const laves__frame *frame, const laves__guarantee *gua
   laves__cuts cuts = {0};
   laves__parted parted = {0};
   laves_result result = LAVES_OK;
+  LAVES_ASSERT(!lattice->graph);
   memset(counts, 0, sizeof *counts);
   laves__links_fill(&s.links);
   for (bool grown = true; grown && result == LAVES_OK;) {
