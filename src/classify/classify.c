@@ -11,6 +11,8 @@
  * domain itself, and only where it matters. */
 #include "classify/classify.h"
 
+#include "classify/classify_graph.h"
+
 typedef struct undecided {
   int32_t (*brick)[3]; /* brick coordinates in the directory */
   size_t count, capacity;
@@ -353,6 +355,7 @@ static const laves__record *find_overflow(const laves__lattice *l) {
 }
 
 laves_result laves__classify(const laves__frame *frame, laves__lattice *lattice, laves_error *error) {
+  if (lattice->graph) return laves__classify_graph(frame, lattice, error);
   laves_context *context = lattice->context;
   carving c = {.frame = frame, .lattice = lattice};
   laves_result result = LAVES_OK;
