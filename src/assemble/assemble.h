@@ -11,7 +11,7 @@ void laves__assemble_estimate(const laves__lattice *lattice, const laves__layer 
 
 /* Builds the mesh. Tets [0, lattice_tet_count) are exact tiles, stamped from the table in the order of the cells; those of
  * the layer follow. Vertices are in the order of the cells, too. Boundary faces carry the tags of the surface, where it has
- * any.
+ * any. Of a graded background, other tets that were not touched stand between the two, and the order is the graph's.
  * Promise: indices in range, orientation positive, the same order for any number of threads.
  * LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED, LAVES_ERROR_OPTION when vertices exceed 2^31. */
 laves_result laves__assemble(const laves__frame *frame, laves__lattice *lattice, const laves__layer *layer, laves_mesh **mesh,

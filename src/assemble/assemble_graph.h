@@ -1,0 +1,14 @@
+/* Stage "mesh" of a graded background; what assemble.h promises. */
+#ifndef LAVES_ASSEMBLE_ASSEMBLE_GRAPH_H
+#define LAVES_ASSEMBLE_ASSEMBLE_GRAPH_H
+
+#include "background/lattice.h"
+#include "mesh/layer.h"
+#include "mesh/mesh.h"
+
+void laves__assemble_graph_estimate(const laves__lattice *lattice, const laves__layer *layer, int64_t *vertices, int64_t *tets);
+
+laves_result laves__assemble_graph(const laves__frame *frame, const laves__lattice *lattice, const laves__layer *layer,
+                                   laves_mesh **mesh, laves_error *error);
+
+#endif

@@ -1,0 +1,181 @@
+/* Which of the layer's vertices live, their numbers, and the boundary with its tags. */
+#include "assemble/layer_part.h"
+
+#include <string.h>
+
+static bool is_alive(const laves__layer *layer, int32_t vertex) {
+  return layer->depth[vertex] > LAVES__DEPTH_MOVES || layer->star[vertex].count > 0;
+}
+
+/* Kept sites: those of the layer that still live, and the IN sites deeper than the layer. */
+static void mask_records(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const laves__layer_part *part = user;
+  for (size_t i = begin; i < end; i++) {
+    const laves__record *r = &part->lattice->record[i];
+    uint32_t mask = 0;
+    for (int site = 0; site < LAVES__C15_SITES; site++) {
+      const bool in_layer = r->depth[site] <= LAVES__DEPTH_MAX;
+      const bool kept =
+          in_layer ? r->vertex[site] < -1 || is_alive(part->layer, r->vertex[site]) : r->label[site] == LAVES__LABEL_IN;
+      if (kept) mask |= UINT32_C(1) << site;
+    }
+    part->mask[i] = mask;
+  }
+}
+
+/* The first vertex of a parted site follows the same rule; only the layer knows which one it is: copies come right behind. */
+static void unmask_dead_parted(const laves__layer_part *part) {
+  const laves__layer *layer = part->layer;
+  for (size_t v = 0; v + 1 < layer->vertex_count; v++) {
+    const uint32_t id = layer->origin[v];
+    if (id == LAVES__NO_ORIGIN || layer->origin[v + 1] != LAVES__NO_ORIGIN || is_alive(layer, (int32_t)v)) continue;
+    part->mask[id / LAVES__C15_SITES] &= ~(UINT32_C(1) << id % LAVES__C15_SITES);
+  }
+}
+
+static void find_faces(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const laves__layer_part *part = user;
+  const laves__layer *layer = part->layer;
+  for (size_t t = begin; t < end; t++) {
+    part->faces[t] = 0;
+    const int32_t *tet = layer->tet[t];
+    if (tet[0] < 0) continue;
+    int on = 0;
+    for (int k = 0; k < 4; k++) on += layer->depth[tet[k]] == 0;
+    if (on < 3) continue;
+    for (int k = 0; k < 4; k++)
+      if (laves__layer_is_boundary_face(layer, (int32_t)t, k)) part->faces[t] |= (uint8_t)(1 << k);
+  }
+}
+
+laves_result laves__layer_part_make(const laves__frame *frame, const laves__lattice *lattice, const laves__layer *layer,
+                                    laves__layer_part *part, laves_error *error) {
+  laves_context *context = lattice->context;
+  const size_t records = lattice->record_count;
+  *part = (laves__layer_part){.frame = frame, .lattice = lattice, .layer = layer, .record_count = records};
+  part->mask = laves__alloc(context, records, sizeof *part->mask);
+  part->first = laves__alloc(context, records, sizeof *part->first);
+  part->id = laves__alloc(context, layer->vertex_count, sizeof *part->id);
+  part->faces = laves__alloc(context, layer->tet_count, 1);
+  if (!part->mask || !part->first || !part->id || !part->faces) return laves__fail_memory(context, error);
+  if (!laves__parallel_for(context, "mesh", records, 64, mask_records, part) ||
+      !laves__parallel_for(context, "mesh", layer->tet_count, 256, find_faces, part))
+    return laves__fail_cancelled(error);
+  unmask_dead_parted(part);
+  for (size_t t = 0; t < layer->tet_count; t++) {
+    part->tet_count += layer->tet[t][0] >= 0;
+    part->face_count += (size_t)__builtin_popcount(part->faces[t]);
+  }
+  return LAVES_OK;
+}
+
+/* Layer vertices at sites take their record's numbers, copies the numbers from `next` on; returns the total. */
+static int64_t number_layer(laves__layer_part *part, int64_t next) {
+  for (size_t v = 0; v < part->layer->vertex_count; v++) {
+    const uint32_t id = part->layer->origin[v];
+    if (!is_alive(part->layer, (int32_t)v))
+      part->id[v] = -1;
+    else if (id != LAVES__NO_ORIGIN)
+      part->id[v] = laves__kept_vertex(part, (int32_t)(id / LAVES__C15_SITES), (int)(id % LAVES__C15_SITES));
+    else
+      part->id[v] = (int32_t)next++;
+  }
+  return next;
+}
+
+laves_result laves__layer_part_mesh(laves__layer_part *part, int64_t vertices, size_t stamped, laves_mesh **mesh,
+                                    laves_error *error) {
+  laves_context *context = part->lattice->context;
+  if (vertices + (int64_t)part->layer->vertex_count > INT32_MAX)
+    return laves__fail(error, LAVES_ERROR_OPTION, "the mesh would have %lld vertices, more than 2^31; choose a larger size",
+                       (long long)vertices);
+  const int64_t total = number_layer(part, vertices);
+  *mesh = laves__mesh_create(context, (size_t)total, stamped + part->tet_count, part->face_count, false,
+                             part->frame->oracle->tag != NULL);
+  return *mesh ? LAVES_OK : laves__fail_memory(context, error);
+}
+
+static void write_tets(const laves__layer_part *part, size_t next, laves_mesh *mesh) {
+  for (size_t t = 0; t < part->layer->tet_count; t++) {
+    const int32_t *tet = part->layer->tet[t];
+    if (tet[0] < 0) continue;
+    for (int k = 0; k < 4; k++) mesh->tets[next][k] = part->id[tet[k]];
+    next++;
+  }
+}
+
+static void write_copies(const laves__layer_part *part, laves_mesh *mesh) {
+  for (size_t v = 0; v < part->layer->vertex_count; v++) {
+    const uint32_t id = part->layer->origin[v];
+    const bool at_site =
+        id != LAVES__NO_ORIGIN && part->lattice->record[id / LAVES__C15_SITES].vertex[id % LAVES__C15_SITES] >= 0;
+    if (!at_site && part->id[v] >= 0) mesh->points[part->id[v]] = laves__frame_to_input(part->frame, part->layer->position[v]);
+  }
+}
+
+static void write_faces(const laves__layer_part *part, laves_mesh *mesh) {
+  size_t next = 0;
+  for (size_t t = 0; t < part->layer->tet_count; t++)
+    for (int k = 0; k < 4; k++) {
+      if (!(part->faces[t] >> k & 1)) continue;
+      for (int j = 0; j < 3; j++) mesh->faces[next][j] = part->id[part->layer->tet[t][laves__tet_face[k][j]]];
+      next++;
+    }
+}
+
+typedef struct tagging {
+  const laves__layer_part *part;
+  laves_mesh *mesh;
+  int32_t *owner; /* [face_count] a layer vertex of each face, for the hint */
+} tagging;
+
+/* The tag of the surface nearest to the centroid of each boundary face. */
+static void tag_faces(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const tagging *g = user;
+  const laves__frame *frame = g->part->frame;
+  const laves__layer *layer = g->part->layer;
+  const laves__oracle *oracle = frame->oracle;
+  for (size_t f = begin; f < end; f++) {
+    const int32_t *face = g->mesh->faces[f];
+    const laves__vec3 sum = v3_add(v3_add(g->mesh->points[face[0]], g->mesh->points[face[1]]), g->mesh->points[face[2]]);
+    const double reach = 2 * frame->size * laves__layer_scale(layer, g->owner[f]);
+    uint32_t hint = layer->hint[g->owner[f]];
+    laves__vec3 foot, normal;
+    g->mesh->face_tags[f] = 1;
+    if (oracle->project(oracle->self, v3_sub(v3_scale(sum, 1.0 / 3), oracle->origin), reach, &hint, &foot, &normal))
+      g->mesh->face_tags[f] = 1 + oracle->tag(oracle->self, foot, hint);
+  }
+}
+
+static laves_result write_tags(const laves__layer_part *part, laves_mesh *mesh, laves_error *error) {
+  laves_context *context = part->lattice->context;
+  tagging g = {part, mesh, laves__alloc(context, mesh->face_count, sizeof *g.owner)};
+  if (!g.owner) return laves__fail_memory(context, error);
+  size_t next = 0;
+  for (size_t t = 0; t < part->layer->tet_count; t++)
+    for (int k = 0; k < 4; k++)
+      if (part->faces[t] >> k & 1) g.owner[next++] = part->layer->tet[t][laves__tet_face[k][0]];
+  const bool done = laves__parallel_for(context, "mesh", mesh->face_count, 64, tag_faces, &g);
+  laves__free(context, g.owner, mesh->face_count, sizeof *g.owner);
+  return done ? LAVES_OK : laves__fail_cancelled(error);
+}
+
+laves_result laves__layer_part_write(const laves__layer_part *part, size_t first_tet, laves_mesh *mesh, laves_error *error) {
+  write_tets(part, first_tet, mesh);
+  write_copies(part, mesh);
+  write_faces(part, mesh);
+  return mesh->face_tags ? write_tags(part, mesh, error) : LAVES_OK;
+}
+
+void laves__layer_part_free(laves__layer_part *part) {
+  if (!part->lattice) return;
+  laves_context *context = part->lattice->context;
+  laves__free(context, part->faces, part->layer->tet_count, 1);
+  laves__free(context, part->id, part->layer->vertex_count, sizeof *part->id);
+  laves__free(context, part->first, part->record_count, sizeof *part->first);
+  laves__free(context, part->mask, part->record_count, sizeof *part->mask);
+  memset(part, 0, sizeof *part);
+}
