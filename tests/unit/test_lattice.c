@@ -159,7 +159,7 @@ static void stars_agree_with_tets(void **state) {
   for (size_t i = 0; i < l.record_count; i++) {
     const laves__record *r = &l.record[i];
     for (int site = 0; site < LAVES__C15_SITES; site++) {
-      const uint32_t kept = laves__star_kept(&l, (int32_t)i, site);
+      const uint64_t kept = laves__star_kept(&l, (int32_t)i, site);
       for (int k = 0; k < laves__c15_star_size[site]; k++) {
         const laves__c15_star_tet star = laves__c15_star[site][k];
         const int32_t owner = r->around[star.cell];

@@ -12,15 +12,15 @@
 #include "snap/snap.h"
 
 /* How many pieces a set of tets of a star falls into, by repeated marking. */
-static int pieces_of(int site, uint32_t set) {
+static int pieces_of(int site, uint64_t set) {
   int pieces = 0;
   while (set) {
-    uint32_t piece = set & -set;
+    uint64_t piece = set & -set;
     for (bool grown = true; grown;) {
       grown = false;
       for (int k = 0; k < laves__c15_star_size[site]; k++)
         for (int j = 0; j < 3 && piece >> k & 1; j++) {
-          const uint32_t next = UINT32_C(1) << laves__c15_star[site][k].across[j];
+          const uint64_t next = UINT64_C(1) << laves__c15_star[site][k].across[j];
           if (!(set & next) || piece & next) continue;
           piece |= next;
           grown = true;
@@ -32,14 +32,14 @@ static int pieces_of(int site, uint32_t set) {
   return pieces;
 }
 
-static uint32_t whole_star(int site) { return (UINT32_C(1) << laves__c15_star_size[site]) - 1; }
+static uint64_t whole_star(int site) { return (UINT64_C(1) << laves__c15_star_size[site]) - 1; }
 
 static void assert_fans(const laves__lattice *l, const laves__parted *parted, const char *name) {
   size_t listed = 0;
   for (size_t i = 0; i < l->record_count; i++)
     for (int site = 0; site < LAVES__C15_SITES; site++) {
       if (l->record[i].label[site] == LAVES__LABEL_OUT) continue;
-      const uint32_t kept = laves__star_kept(l, (int32_t)i, site);
+      const uint64_t kept = laves__star_kept(l, (int32_t)i, site);
       if (l->record[i].label[site] == LAVES__LABEL_IN) {
         if (kept != whole_star(site)) fail_msg("%s: a site inside has an OUT neighbour", name);
         continue;
@@ -53,7 +53,7 @@ static void assert_fans(const laves__lattice *l, const laves__parted *parted, co
       if (pieces > 1) {
         if (!item) fail_msg("%s: %d fans at a site that is not listed", name, pieces);
         assert_int_equal(item->fan_count, pieces);
-        uint32_t all = 0;
+        uint64_t all = 0;
         for (int f = 0; f < pieces; f++) {
           assert_int_equal(all & item->fan[f], 0);
           assert_int_equal(pieces_of(site, item->fan[f]), 1);
