@@ -52,9 +52,17 @@ static void say_exceptions(const laves_certificate *c, bool lists) {
   }
 }
 
+static void say_tiles(const laves_certificate *c) {
+  const double percent = c->check.tets ? 100 / (double)c->check.tets : 0;
+  if (c->bcc_tets > 0 && c->bcc_tets != SIZE_MAX)
+    text_say("  %.1f %% exact tiles, and %.1f %% exact tiles of BCC", percent * (double)c->lattice_tets,
+             percent * (double)c->bcc_tets);
+  else
+    text_say("  %.1f %% exact tiles", percent * (double)c->lattice_tets);
+}
+
 void statement_say(const laves_certificate *c, bool lists) {
-  const double share = c->check.tets ? 100 * (double)c->lattice_tets / (double)c->check.tets : 0;
-  text_say("  %.1f %% exact tiles", share);
+  say_tiles(c);
   if (c->check.has_distance) say_distances(&c->check);
   if (c->has_promise) {
     text_say("  promised %.6g .. %.6g%s: %s", c->promised_min_dihedral, c->promised_max_dihedral, text_degree(),
@@ -74,6 +82,7 @@ static void write_exceptions(json *out, const laves_certificate *c) {
 void statement_write_json(json *out, const laves_certificate *c) {
   json_text(out, "sha256", c->mesh_hash);
   json_integer(out, "exact_tets", (int64_t)c->lattice_tets);
+  if (c->bcc_tets != SIZE_MAX) json_integer(out, "bcc_tets", (int64_t)c->bcc_tets);
   json_numbers(out, "attained", (const double[2]){c->attained_min_dihedral, c->attained_max_dihedral}, 2);
   json_boolean(out, "promise_holds", c->promise_holds);
   write_exceptions(out, c);

@@ -520,8 +520,11 @@ typedef struct laves_certificate {
   size_t stuffed_vertices, relaxed_vertices, pinches;  ///< as in laves_report
   double relaxed_max;
 
-  size_t lattice_tets;       ///< tets congruent to one of the three tiles of one common size, found by their shape
-  double lattice_size;       ///< that size (mean edge of the tiling); 0: none
+  size_t lattice_tets;       ///< tets congruent to one of the three tiles of C15, of one common size or of that times a power
+                             ///< of two (graded meshes), found by their shape
+  size_t bcc_tets;           ///< the same of the one tile of BCC, whose cubes are cut from C15's; SIZE_MAX: not known (read
+                             ///< from an older certificate)
+  double lattice_size;       ///< that size (mean edge of the tiling), as the most tiles have it; 0: none
   double lattice_tolerance;  ///< relative, of the squares of edges
 
   double angle_margin;                                  ///< degrees; no angle is computed worse than this

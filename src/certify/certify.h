@@ -108,7 +108,7 @@ void laves__survey_free(laves__survey *survey);
 laves_result laves__mesh_digest(laves_context *context, const laves_mesh *mesh, char text[LAVES_HASH_CAPACITY],
                                 laves_error *error);
 
-/* Counts the tets that are exact tiles by their shape; fills the members lattice_... */
+/* Counts the tets that are exact tiles by their shape; fills the members lattice_... and bcc_tets. */
 laves_result laves__find_tiles(laves_context *context, const laves_mesh *mesh, laves_certificate *certificate,
                                laves_error *error);
 

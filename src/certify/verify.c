@@ -65,6 +65,9 @@ static void compare_member(comparing *c, const laves__member *m) {
     case LAVES__MEMBER_TEXT:
       compare_text(c, m, stated, found);
       break;
+    case LAVES__MEMBER_LATER:
+      if (*(const size_t *)stated != SIZE_MAX) compare_count(c, m, *(const size_t *)stated, *(const size_t *)found);
+      break;
     case LAVES__MEMBER_COUNT:
       for (size_t i = 0; i < m->count; i++) compare_count(c, m, ((const size_t *)stated)[i], ((const size_t *)found)[i]);
       break;

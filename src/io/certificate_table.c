@@ -76,6 +76,7 @@ const laves__member laves__certificate_members[] = {
     QUALITY(volume_length, min, volume_length_tet, volume_length_place, max),
 
     ROW("tiles", "exact_tets", COUNT, EXACT, lattice_tets, 1),
+    ROW("tiles", "bcc_tets", LATER, EXACT, bcc_tets, 1),
     ROW("tiles", "size", NUMBER, CLOSE, lattice_size, 1),
     ROW("tiles", "tolerance", NUMBER, CLOSE, lattice_tolerance, 1),
 

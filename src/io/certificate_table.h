@@ -10,6 +10,7 @@ enum { LAVES__CERTIFICATE_SCHEMA = 1 };
 typedef enum laves__member_kind {
   LAVES__MEMBER_TEXT,    /* char[count], with its NUL */
   LAVES__MEMBER_COUNT,   /* size_t[count] */
+  LAVES__MEMBER_LATER,   /* size_t; null or, in certificates older than it, missing: SIZE_MAX, not known */
   LAVES__MEMBER_INTEGER, /* int64_t */
   LAVES__MEMBER_NUMBER,  /* double[count]; null: NAN */
   LAVES__MEMBER_FLAG,    /* bool */

@@ -51,6 +51,11 @@ static bool get_count(const json_t *value, size_t *to) {
   return right;
 }
 
+static bool get_later(const json_t *value, size_t *to) {
+  *to = SIZE_MAX;
+  return json_is_null(value) || get_count(value, to);
+}
+
 static bool get_number(const json_t *value, double *to) {
   *to = json_is_number(value) ? json_number_value(value) : NAN;
   return json_is_number(value) || json_is_null(value);
@@ -81,6 +86,8 @@ static bool get_value(const json_t *value, const laves__member *member, void *to
     case LAVES__MEMBER_COUNT:
       for (size_t i = 0; i < member->count && right; i++) right = get_count(item_of(value, i, member->count), (size_t *)to + i);
       return right;
+    case LAVES__MEMBER_LATER:
+      return get_later(value, to);
     case LAVES__MEMBER_INTEGER:
       return get_integer(value, INT64_MIN, to);
     case LAVES__MEMBER_NUMBER:
@@ -107,6 +114,8 @@ static const char *need_of(const laves__member *member) {
       return "must be a text that is not too long, or null";
     case LAVES__MEMBER_COUNT:
       return member->count == 1 ? "must be a count" : "must be an array of counts, of the right length";
+    case LAVES__MEMBER_LATER:
+      return "must be a count or null";
     case LAVES__MEMBER_INTEGER:
       return "must be a whole number";
     case LAVES__MEMBER_NUMBER:
@@ -125,6 +134,7 @@ static laves_result read_members(const reader *r, const char *group, const json_
     const laves__member *member = &laves__certificate_members[i];
     if (strcmp(member->group, group) != 0) continue;
     const json_t *value = json_object_get(object, member->name);
+    if (!value && member->kind == LAVES__MEMBER_LATER) value = json_null();
     if (!value) return fail_member(r, group, member->name, "is missing");
     if (!get_value(value, member, (char *)r->certificate + member->offset))
       return fail_member(r, group, member->name, need_of(member));

@@ -83,6 +83,12 @@ static void put_member(writer *w, const laves_certificate *certificate, const la
     case LAVES__MEMBER_COUNT:
       put_counts(w, at, member->count);
       break;
+    case LAVES__MEMBER_LATER:
+      if (*(const size_t *)at == SIZE_MAX)
+        laves__output_bytes(&w->out, "null", 4);
+      else
+        put_counts(w, at, 1);
+      break;
     case LAVES__MEMBER_INTEGER:
       laves__output_printf(&w->out, "%lld", (long long)*(const int64_t *)at);
       break;

@@ -1,6 +1,6 @@
 # Other programs read every format that laves writes and count and measure what they find, and laves reads what they write.
 # Skipped, loudly, where a program is missing.
-foreach(program write_formats count_mesh size_at)
+foreach(program write_formats write_graded count_mesh size_at)
   add_executable(${program} referee/${program}.c)
   target_link_libraries(${program} PRIVATE laves-fixtures)
 endforeach()
@@ -15,6 +15,6 @@ add_test(NAME referee/sizes_by_gmsh COMMAND ${CMAKE_CURRENT_LIST_DIR}/sizes_by_g
 set_tests_properties(referee/sizes_by_gmsh PROPERTIES LABELS referee SKIP_RETURN_CODE 77)
 # Exact arithmetic in another language has the second word on certificates, and refuses forged ones.
 if(TARGET laves-program)
-  add_test(NAME referee/certificates COMMAND ${CMAKE_CURRENT_LIST_DIR}/certificates $<TARGET_FILE:laves-program>)
+  add_test(NAME referee/certificates COMMAND ${CMAKE_CURRENT_LIST_DIR}/certificates $<TARGET_FILE:laves-program> $<TARGET_FILE:write_graded>)
   set_tests_properties(referee/certificates PROPERTIES LABELS referee)
 endif()

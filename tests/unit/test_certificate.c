@@ -11,6 +11,7 @@
 
 #include "certify/certify.h"
 #include "fixtures/folders.h"
+#include "fixtures/graded.h"
 #include "fixtures/meshes.h"
 #include "fixtures/shapes.h"
 #include "io/certificate_table.h"
@@ -305,6 +306,7 @@ static void assert_same(const laves_certificate *a, const laves_certificate *b) 
           if (u != v && !(isnan(u) && isnan(v))) fail_msg("%s.%s: %.17g and %.17g", m->group, m->name, u, v);
         }
         break;
+      case LAVES__MEMBER_LATER:
       case LAVES__MEMBER_COUNT:
         assert_memory_equal(x, y, m->count * sizeof(size_t));
         break;
@@ -363,6 +365,41 @@ static void through_a_file(void **state) {
   assert_string_equal(differences[0].text, "topology.genus: the certificate says 7, and it is 1");
   laves_mesh_free(mesh);
   laves_domain_free(domain);
+  fixture_folder_remove(folder);
+}
+
+/* The tiles of a graded mesh stand in the file; forged counts are found out, and older files, which lack one, are read. */
+static void graded_tiles(void **state) {
+  char folder[FIXTURE_FOLDER_MAX], path[FIXTURE_FOLDER_MAX + 20];
+  assert_true(fixture_folder_make(folder));
+  snprintf(path, sizeof path, "%s/a.json", folder);
+  size_t tiles[3], count;
+  laves_mesh *mesh = fixture_graded(*state, tiles);
+  const laves_certificate c = certify(*state, mesh, NULL);
+  laves_certificate read;
+  laves_difference differences[8];
+  assert_true(c.check.inverted_tets == 0 && c.lattice_tets > 0 && c.bcc_tets > 0);
+  assert_int_equal(laves_certificate_write(*state, &c, path, NULL), LAVES_OK);
+  assert_int_equal(laves_certificate_read(*state, path, &read, NULL), LAVES_OK);
+  assert_same(&c, &read);
+  assert_int_equal(laves_certificate_verify(*state, mesh, NULL, NULL, &read, differences, 8, &count, NULL), LAVES_OK);
+  assert_int_equal(count, 0);
+
+  read.lattice_tets++;
+  read.bcc_tets--;
+  read.lattice_size *= 2;
+  assert_int_equal(laves_certificate_verify(*state, mesh, NULL, NULL, &read, differences, 8, &count, NULL), LAVES_OK);
+  assert_int_equal(count, 3);
+  assert_non_null(strstr(differences[1].text, "tiles.bcc_tets: the certificate says "));
+
+  read = c;
+  read.bcc_tets = SIZE_MAX;
+  assert_int_equal(laves_certificate_write(*state, &read, path, NULL), LAVES_OK);
+  assert_int_equal(laves_certificate_read(*state, path, &read, NULL), LAVES_OK);
+  assert_true(read.bcc_tets == SIZE_MAX);
+  assert_int_equal(laves_certificate_verify(*state, mesh, NULL, NULL, &read, differences, 8, &count, NULL), LAVES_OK);
+  assert_int_equal(count, 0);
+  laves_mesh_free(mesh);
   fixture_folder_remove(folder);
 }
 
@@ -431,6 +468,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(implicit_surfaces, set_up, tear_down),
       cmocka_unit_test_setup_teardown(bound_of_iterated_feet, set_up, tear_down),
       cmocka_unit_test_setup_teardown(through_a_file, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(graded_tiles, set_up, tear_down),
       cmocka_unit_test_setup_teardown(long_expressions, set_up, tear_down),
       cmocka_unit_test_setup_teardown(refused_files, set_up, tear_down),
       cmocka_unit_test_setup_teardown(options_of_ones_own, set_up, tear_down),

@@ -6,7 +6,9 @@
 /* cmocka.h wants the headers above. */
 #include <cmocka.h>
 
+#include "background/graph.h"
 #include "certify/certify.h"
+#include "fixtures/graded.h"
 #include "fixtures/meshes.h"
 
 static int set_up(void **state) {
@@ -86,6 +88,66 @@ static void two_sizes(void **state) {
   laves_mesh_free(mesh);
 }
 
+/* ---- several sizes and two lattices ---- */
+
+/* An edge of a face, and the centres of the cubes on both sides of it. */
+static laves_mesh *one_bcc_tile(laves_context *context, double quarter) {
+  static const double corner[4][3] = {{0, 0, 0}, {4, 0, 0}, {2, 2, -2}, {2, 2, 2}};
+  laves_mesh *mesh = laves__mesh_create(context, 4, 1, 0, false, false);
+  assert_non_null(mesh);
+  for (int i = 0; i < 4; i++) {
+    mesh->points[i] = v3(quarter * corner[i][0], quarter * corner[i][1], quarter * corner[i][2]);
+    mesh->tets[0][i] = i;
+  }
+  return mesh;
+}
+
+/* The size of a BCC tile is that of the C15 tiles that its cubes would be decorated with. */
+static void tile_of_bcc(void **state) {
+  laves_mesh *mesh = one_bcc_tile(*state, 1);
+  laves_certificate c = tiles_of(*state, mesh);
+  assert_int_equal(c.bcc_tets, 1);
+  assert_int_equal(c.lattice_tets, 0);
+  assert_float_equal(c.lattice_size, 3.184913173150872, 1e-12);
+  mesh->points[3].z += 1e-6;
+  c = tiles_of(*state, mesh);
+  assert_int_equal(c.bcc_tets, 0);
+  assert_true(c.lattice_size == 0);
+  laves_mesh_free(mesh);
+}
+
+/* Copies of a tiling at 1/8, 1/2 and 4 of its size count together, and the size is that of the most. */
+static void powers_of_two(void **state) {
+  static const double scales[] = {0.125, 0.5, 4};
+  laves_mesh *mesh = tiling(*state, 1);
+  const size_t n = mesh->vertex_count, all = mesh->tet_count, counts[] = {all / 3, all, all / 2};
+  laves_mesh *many = laves__mesh_create(*state, 3 * n, counts[0] + counts[1] + counts[2], 0, false, false);
+  assert_non_null(many);
+  size_t tet = 0;
+  for (size_t copy = 0; copy < 3; copy++) {
+    for (size_t v = 0; v < n; v++) many->points[copy * n + v] = v3_scale(mesh->points[v], scales[copy]);
+    for (size_t t = 0; t < counts[copy]; t++, tet++)
+      for (int i = 0; i < 4; i++) many->tets[tet][i] = mesh->tets[t][i] + (int32_t)(copy * n);
+  }
+  const laves_certificate c = tiles_of(*state, many);
+  assert_int_equal(c.lattice_tets, many->tet_count);
+  assert_int_equal(c.bcc_tets, 0);
+  assert_float_equal(c.lattice_size, 0.5, 1e-12);
+  laves_mesh_free(many);
+  laves_mesh_free(mesh);
+}
+
+/* No fewer than their maker made; some parts of transitions are shaped like tiles and counted, too. */
+static void graded_background(void **state) {
+  size_t tiles[3];
+  laves_mesh *mesh = fixture_graded(*state, tiles);
+  const laves_certificate c = tiles_of(*state, mesh);
+  assert_true(tiles[LAVES__TILE_C15] > 0 && tiles[LAVES__TILE_BCC] > 0 && tiles[LAVES__TILE_OTHER] > 0);
+  assert_in_range(c.lattice_tets, tiles[LAVES__TILE_C15], tiles[LAVES__TILE_C15] + tiles[LAVES__TILE_OTHER] / 4);
+  assert_in_range(c.bcc_tets, tiles[LAVES__TILE_BCC], tiles[LAVES__TILE_BCC] + tiles[LAVES__TILE_OTHER] / 4);
+  laves_mesh_free(mesh);
+}
+
 /* Kuhn's tets are no tiles; nor is anything that cannot be measured. */
 static void none(void **state) {
   laves_mesh *mesh = fixture_cubes(*state, 3, 3, 3, NULL, NULL);
@@ -121,6 +183,9 @@ int main(void) {
       cmocka_unit_test_setup_teardown(turned_and_far, set_up, tear_down),
       cmocka_unit_test_setup_teardown(one_moved_vertex, set_up, tear_down),
       cmocka_unit_test_setup_teardown(two_sizes, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(tile_of_bcc, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(powers_of_two, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(graded_background, set_up, tear_down),
       cmocka_unit_test_setup_teardown(none, set_up, tear_down),
       cmocka_unit_test_setup_teardown(right_lengths_in_wrong_places, set_up, tear_down),
   };
