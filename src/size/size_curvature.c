@@ -6,13 +6,16 @@
  * the cylinder below it. A face has the mean tensor of its three corners, which evens out how the diagonals of facets fall.
  *
  * Other surfaces: differences of normals over a piece of the surface, about 0.6 of its width apart each way. Where the normal
- * jumps by more than 40 degrees the piece is too large to tell a tight bend from a crease. */
+ * jumps by more than 40 degrees, or bends more when looked at more closely, the piece is too large to tell a tight bend from a
+ * crease. */
 #include <string.h>
 
 #include "size/size_parts.h"
 
 /* How far from the middle of a piece normals are taken, in parts of its width: about 0.3 of the size that belongs to it. */
 static const double normal_offset = 0.43;
+/* How much more a surface may bend when seen at half the distance, in parts and in radians over that distance. */
+static const double alike = 1.5, flat_angle = 0.02;
 
 /* xx yy zz xy yz zx */
 typedef struct tensor {
@@ -168,12 +171,11 @@ void laves__curvature_free(laves__curvature *c) {
 
 /* ---- other surfaces ---- */
 
-/* Half the difference of the normals at both ends of a stretch over its half length; false where it jumps. */
-static bool normal_slope(const laves__projection ends[2], laves__vec3 *slope) {
-  if (v3_dot(ends[0].normal, ends[1].normal) < LAVES__CREASE_COSINE) return false;
-  const double length = v3_distance(ends[0].foot, ends[1].foot);
-  if (!(length > 0)) return false;
-  *slope = v3_scale(v3_sub(ends[1].normal, ends[0].normal), 1 / length);
+/* How the normal turns between two feet, per length; false where it jumps. */
+static bool normal_slope(const laves__projection *from, const laves__projection *to, laves__vec3 *slope) {
+  const double length = v3_distance(from->foot, to->foot);
+  if (!(length > 0) || v3_dot(from->normal, to->normal) < LAVES__CREASE_COSINE) return false;
+  *slope = v3_scale(v3_sub(to->normal, from->normal), 1 / length);
   return true;
 }
 
@@ -183,21 +185,32 @@ static double largest_of_two(double a, double b, double c, double d) {
   return fabs(mean) + sqrt(difference * difference + off * off);
 }
 
+/* Whether the normal turns smoothly over a stretch: as much per length over its inner half as over the whole. */
+static bool bends_smoothly(const laves__projection wide[2], const laves__projection narrow[2], double slack, laves__vec3 *slope) {
+  laves__vec3 whole;
+  if (!normal_slope(&wide[0], &wide[1], &whole) || !normal_slope(&narrow[0], &narrow[1], slope)) return false;
+  return v3_norm(*slope) <= alike * v3_norm(whole) + slack;
+}
+
+/* Seen at half the distance a smooth surface bends as before, and a crease, however blunt, twice as much. */
 static double curvature_by_normals(const laves__oracle *oracle, const laves__patch *p, bool *unresolved) {
   const laves__vec3 axis = fabs(p->normal.x) < 0.6 ? v3(1, 0, 0) : fabs(p->normal.y) < 0.6 ? v3(0, 1, 0) : v3(0, 0, 1);
   const laves__vec3 u = v3_unit(v3_cross(p->normal, axis)), v = v3_cross(p->normal, u);
   const double offset = normal_offset * p->width;
-  laves__vec3 points[4] = {v3_mad(p->point, u, -offset), v3_mad(p->point, u, offset), v3_mad(p->point, v, -offset),
-                           v3_mad(p->point, v, offset)};
-  laves__projection feet[4];
-  for (int i = 0; i < 4; i++) feet[i].hint = LAVES__NO_HINT;
-  laves__project_many(oracle, 4, points, 2 * p->width, feet);
-  laves__vec3 along_u, along_v;
-  for (int i = 0; i < 4; i++) *unresolved |= !feet[i].found || v3_dot(feet[i].normal, p->normal) < LAVES__CREASE_COSINE;
-  if (*unresolved || !normal_slope(feet, &along_u) || !normal_slope(feet + 2, &along_v)) {
-    *unresolved = true;
-    return 0;
+  laves__vec3 points[8];
+  laves__projection feet[8];
+  for (int i = 0; i < 8; i++) {
+    const double share = (i & 1 ? 1 : -1) * (i & 4 ? 0.5 : 1);
+    points[i] = v3_mad(p->point, i & 2 ? v : u, share * offset);
+    feet[i].hint = LAVES__NO_HINT;
   }
+  laves__project_many(oracle, 8, points, 2 * p->width, feet);
+  for (int i = 0; i < 8; i++) *unresolved |= !feet[i].found || v3_dot(feet[i].normal, p->normal) < LAVES__CREASE_COSINE;
+  if (*unresolved) return 0;
+  laves__vec3 along_u, along_v;
+  const double slack = flat_angle / offset;
+  *unresolved = !bends_smoothly(feet, feet + 4, slack, &along_u) || !bends_smoothly(feet + 2, feet + 6, slack, &along_v);
+  if (*unresolved) return 0;
   return largest_of_two(v3_dot(along_u, u), v3_dot(along_u, v), v3_dot(along_v, u), v3_dot(along_v, v));
 }
 

@@ -14,6 +14,8 @@
 /* A triangle of edge h with its corners on a sphere of curvature k lies h^2 k / 6 below it in its middle (on a cylinder at
  * most h^2 k / 8); with k the larger curvature, that is the distance of a boundary face. */
 static const double sagitta_factor = 6;
+/* Floors down to which a jump of the normal is followed: a bend that asks for the floor is seen from there. */
+static const double crease_scale = 3;
 static const double two_pi = 6.283185307179586;
 enum { PATCH_BATCH = 64 };
 
@@ -62,7 +64,7 @@ static void ask_range(void *user, size_t begin, size_t end, int worker) {
     const laves__patch *p = &a->patches[i];
     bool unresolved;
     a->sizes[i] = ask(a, p, &unresolved);
-    const double wanted = unresolved ? a->size->floor : fmin(a->sizes[i], a->size->base);
+    const double wanted = unresolved ? crease_scale * a->size->floor : fmin(a->sizes[i], a->size->base);
     const bool wide = p->width > LAVES__SAMPLE_SPACING * wanted;
     a->parts[i] = (uint8_t)(!wide ? 0 : p->face == LAVES__NONE ? LAVES__PATCH_PARTS : 2);
   }

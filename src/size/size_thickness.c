@@ -1,28 +1,38 @@
 /* How thick the walls of the solid are, and how wide the gaps between them.
  *
  * In: a piece of the surface.  Out: the way to the surface met first along its normal, inwards through the wall or outwards
- * across the gap, where the surface there faces the other way; a wedge at a right angle does not count.
+ * across the gap, where the surface there faces the other way; a blunt wedge does not count.
  *
- * Clean triangle surfaces are met by rays. Elsewhere phi is followed: where it is a distance, by steps of its value, which
- * cannot pass the surface; else by steps that grow up to a quarter of the size, within which a wall thinner than a step can be
- * missed. The crossing is then halved down. */
+ * Triangles are met by rays; those that bound nothing at that place are passed. Elsewhere phi is followed: where it is a
+ * distance, by steps of its value, which cannot pass the surface; else by steps that grow up to a quarter of the size, within
+ * which a wall thinner than a step can be missed. The crossing is then halved down. */
 #include "size/size_parts.h"
 
-/* The other side faces back when the cosine between the normals is below this: 120 degrees apart or more. */
-static const double opposed = -0.5;
+/* The other side faces back when the cosine between the normals is below this: to within 37 degrees, as for thin places. Wedges
+ * are thin at every edge, and only the floor would end their refinement. */
+static const double opposed = -0.8;
 /* First step, and least of all, in parts of the floor of sizes; largest one where phi is no distance, in sizes. */
 static const double least_step = 0.25, largest_step = 0.25;
 /* Steps grow by this factor where nothing tells how far the surface is. */
 static const double step_growth = 1.5;
-enum { STEPS_MAX = 2000, HALVINGS = 30 };
+enum { STEPS_MAX = 2000, HALVINGS = 30, FACES_PASSED = 16 };
 
 /* ---- rays ---- */
 
 static double shoot(const laves__surface *s, const laves__patch *p, laves__vec3 direction, double reach) {
-  laves__hit hit = {reach, LAVES__NONE};
-  laves__bvh_shoot(&s->bvh, p->point, direction, p->face, &hit);
-  if (hit.slot == LAVES__NONE || !(hit.distance > 0)) return INFINITY;
-  return v3_dot(s->face_normals[hit.slot], p->normal) < opposed ? hit.distance : INFINITY;
+  double way = 0;
+  uint32_t skip = p->face;
+  for (int i = 0; i < FACES_PASSED; i++) {
+    const laves__vec3 start = v3_mad(p->point, direction, way);
+    laves__hit hit = {reach - way, LAVES__NONE};
+    laves__bvh_shoot(&s->bvh, start, direction, skip, &hit);
+    if (hit.slot == LAVES__NONE) return INFINITY;
+    way += hit.distance;
+    skip = hit.slot;
+    if (!laves__surface_bounds_at(s, hit.slot, v3_mad(start, direction, hit.distance))) continue;
+    return way > 0 && v3_dot(s->face_normals[hit.slot], p->normal) < opposed ? way : INFINITY;
+  }
+  return INFINITY;
 }
 
 /* ---- steps ---- */
@@ -73,6 +83,6 @@ static double follow(const laves__size *size, const laves__patch *p, laves__vec3
 double laves__thickness_at(const laves__size *size, const laves__patch *p, double reach) {
   const laves__surface *s = size->oracle->surface;
   const laves__vec3 inwards = v3_scale(p->normal, -1);
-  if (s && !s->open && !s->needs_winding) return fmin(shoot(s, p, inwards, reach), shoot(s, p, p->normal, reach));
+  if (s) return fmin(shoot(s, p, inwards, reach), shoot(s, p, p->normal, reach));
   return fmin(follow(size, p, inwards, reach, true), follow(size, p, p->normal, reach, false));
 }

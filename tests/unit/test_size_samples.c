@@ -145,6 +145,17 @@ static void curvature_of_boxes_is_none(void **state) {
   drop(&m);
 }
 
+/* A sphere that stands a little out of a box: the edge there turns by 34 degrees, and is no bend. */
+static void blunt_edges_are_no_bends(void **state) {
+  (void)state;
+  laves_options options = laves_options_default();
+  options.curvature_elements = 12;
+  made m = of_expression("box(1, 1, 1) | sphere(0.6)");
+  ask(&m, &options, 0.1);
+  assert_int_equal(m.count, 0);
+  drop(&m);
+}
+
 static void distance_by_curvature(void **state) {
   (void)state;
   laves_options options = laves_options_default();
@@ -203,6 +214,23 @@ static void thickness_of_gaps(void **state) {
   m = of_expression("box(1, 1, 1) | box(1, 1, 1):move(1.05, 0, 0)");
   ask(&m, &options, 0.3);
   assert_close(least_near(&m, 0.5, 0, 0, 0.3), 0.05, 1e-6);
+  drop(&m);
+}
+
+/* Walls that lie within the solid bound nothing: a thin box in a thick one, and one that stands out of it. */
+static void hidden_walls_do_not_count(void **state) {
+  (void)state;
+  laves_options options = laves_options_default();
+  options.thickness_elements = 2;
+  shape s = shape_box((double[3]){0, 0, 0}, (double[3]){1, 1, 1}, 1);
+  shape thin = shape_box((double[3]){-0.5, 0.3, 0.45}, (double[3]){0.5, 0.7, 0.5}, 1);
+  shape_append(&s, &thin);
+  shape_free(&thin);
+  made m = of_shape(s);
+  ask(&m, &options, 0.15);
+  expect_all(&m, 0.025 * (1 - 1e-9), 0.025 * (1 + 1e-9), 0);
+  assert_close(least_near(&m, -0.25, 0.5, 0.5, 0.2), 0.025, 1e-9);
+  assert_true(isinf(least_near(&m, 0.3, 0.5, 0.5, 0.25))); /* within the thick one */
   drop(&m);
 }
 
@@ -282,6 +310,8 @@ int main(void) {
       cmocka_unit_test(features_of_boxes),
       cmocka_unit_test(features_of_the_ell),
       cmocka_unit_test(threads_do_not_matter),
+      cmocka_unit_test(blunt_edges_are_no_bends),
+      cmocka_unit_test(hidden_walls_do_not_count),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
