@@ -1,6 +1,6 @@
 /* The story from domain to mesh, in one function: laves_generate().
  *
- *     domain -> background -> classify -> snap -> improve -> (stuff -> improve, where the promise is broken) -> mesh
+ *     domain -> sizes -> background -> classify -> snap -> improve -> (stuff -> improve, where the promise is broken) -> mesh
  *
  * Each stage is one call with one promise, told in its header; each is timed. All coordinates between classify and mesh are
  * those of the frame: centred on the domain, turned as wished, in units of the size. */
@@ -10,6 +10,8 @@
 
 #include "assemble/assemble.h"
 #include "classify/classify.h"
+#include "graded/graded.h"
+#include "graded/wishes.h"
 #include "improve/improve.h"
 #include "options.h"
 #include "snap/snap.h"
@@ -24,11 +26,17 @@ typedef struct run {
   laves_report *report;
   laves_error *error;
   laves__frame frame;
+  laves__size *sizes; /* NULL: the size is the same everywhere, and the next three are not used */
+  laves__wishes wishes;
+  laves__octree tree;
+  laves__graph graph;
   laves__lattice lattice;
   laves__layer layer;
   laves__snap_counts counts;
   laves__stuff_counts stuffed;
   const laves__guarantee *guarantee; /* NULL: nothing is promised */
+  int round;                         /* of refinement for the sake of the distance */
+  size_t distant;                    /* places still further away than asked */
   bool rough;                        /* the solid is rougher than the size */
   double wall, cpu;                  /* at the start of the stage under way */
 } run;
@@ -78,10 +86,41 @@ static laves_result choose_frame(run *r) {
   return laves__fail(r->error, LAVES_ERROR_INPUT, "no inside was found: the volume of the solid is %g", r->report->volume);
 }
 
+/* What is wished where. A field that turns out to be the same everywhere is none. */
+static laves_result choose_sizes(run *r) {
+  const double base = r->frame.size;
+  begin_stage(r);
+  laves_result result = laves__size_create(r->context, r->domain, r->options, base, &r->sizes, r->error);
+  if (result == LAVES_OK && laves__size_is_constant(r->sizes)) {
+    laves__size_free(r->sizes);
+    r->sizes = NULL;
+  } else if (result == LAVES_OK) {
+    r->guarantee = NULL; /* what is proved is proved for one size */
+    result = laves__wishes_make(r->context, r->sizes, base, &r->wishes, r->error);
+  }
+  if (r->sizes) end_stage(r, "sizes");
+  if (result == LAVES_OK && r->sizes && r->options->method == LAVES_METHOD_STUFF)
+    return laves__fail(r->error, LAVES_ERROR_OPTION,
+                       "stuffing needs one size everywhere, but sizes that vary were asked for; leave one of the two away");
+  return result;
+}
+
+static laves_result make_graded_background(run *r) {
+  laves__demand demand;
+  laves__graph_free(&r->graph);
+  laves__octree_free(&r->tree);
+  if (!laves__wishes_demand(&r->wishes, &r->frame, &demand)) return laves__fail_memory(r->context, r->error);
+  laves_result result = laves__graded_background(&r->frame, &demand, r->context, &r->tree, &r->graph, r->error);
+  if (result == LAVES_OK) result = laves__size_status(r->sizes, r->error);
+  if (result == LAVES_OK) result = laves__lattice_of_graph(r->context, &r->graph, &r->lattice, r->error);
+  return result;
+}
+
 static laves_result make_background(run *r) {
   begin_stage(r);
   laves__lattice_free(&r->lattice);
-  const laves_result result = laves__lattice_create(r->context, laves__frame_bounds(&r->frame), &r->lattice, r->error);
+  const laves_result result = r->sizes ? make_graded_background(r)
+                                       : laves__lattice_create(r->context, laves__frame_bounds(&r->frame), &r->lattice, r->error);
   end_stage(r, "background");
   return result;
 }
@@ -124,21 +163,39 @@ static laves_result stuff_everything(run *r) {
  * alone stands for a small part makes a piece as large as an edge.) */
 static const double least_snapped = 0.5, least_filled = 0.25, most_filled = 2;
 
+static double volume_of(const laves__vec3 p[4]) { return v3_det(p[0], p[1], p[2], p[3]) / 6; }
+
+/* Volume of the tiles that are stamped as they are. */
+static double stamped_volume(const run *r, size_t layer_tets) {
+  static const double tile = LAVES__CELL_SIDE * LAVES__CELL_SIDE * LAVES__CELL_SIDE / LAVES__C15_TETS; /* mean volume */
+  double volume = 0;
+  if (!r->lattice.graph) {
+    int64_t vertices, tets;
+    laves__assemble_estimate(&r->lattice, &r->layer, &vertices, &tets);
+    return (double)(tets - (int64_t)layer_tets) * tile;
+  }
+  for (size_t t = 0; t < r->graph.tet_count; t++) {
+    if (!(r->graph.flags[t] & LAVES__TET_STAMPED)) continue;
+    laves__vec3 p[4];
+    for (int k = 0; k < 4; k++) p[k] = r->graph.position[r->graph.tet[t][k]];
+    volume += volume_of(p);
+  }
+  return volume;
+}
+
 /* Volume of the mesh as it is now, over that of the solid. */
 static double filled_share(const run *r) {
-  static const double tile = LAVES__CELL_SIDE * LAVES__CELL_SIDE * LAVES__CELL_SIDE / LAVES__C15_TETS; /* mean volume */
-  int64_t vertices, tiles;
   double layer = 0;
-  laves__assemble_estimate(&r->lattice, &r->layer, &vertices, &tiles);
+  size_t layer_tets = 0;
   for (size_t t = 0; t < r->layer.tet_count; t++) {
     if (r->layer.tet[t][0] < 0) continue;
     laves__vec3 p[4];
     laves__layer_points(&r->layer, (int32_t)t, p);
-    layer += v3_det(p[0], p[1], p[2], p[3]) / 6;
-    tiles--;
+    layer += volume_of(p);
+    layer_tets++;
   }
   const double size = r->frame.size;
-  return ((double)tiles * tile + layer) * size * size * size / r->report->volume;
+  return (stamped_volume(r, layer_tets) + layer) * size * size * size / r->report->volume;
 }
 
 /* Whether stuffing may take the place of snapping. */
@@ -168,7 +225,7 @@ static laves_result hardly_resolved(const run *r, double share) {
 
 /* Background to boundary; repeated with a corrected size when a count was asked for and missed. */
 static laves_result make_boundary(run *r) {
-  enum { CORRECTIONS = 4 };
+  const int corrections = r->sizes ? 8 : 4; /* where sizes vary, counts follow less simply */
   for (int correction = 0;; correction++) {
     laves_result result = make_background(r);
     if (result == LAVES_OK) result = classify(r);
@@ -178,7 +235,7 @@ static laves_result make_boundary(run *r) {
     laves__assemble_estimate(&r->lattice, &r->layer, &vertices, &tets);
     const double factor = laves__options_correction(r->options, tets, vertices);
     if (tets == 0) return nothing_resolved(r);
-    if (factor == 1 || correction == CORRECTIONS) break;
+    if (factor == 1 || correction == corrections) break;
     r->frame.size *= factor;
   }
   const double share = filled_share(r);
@@ -267,6 +324,38 @@ static laves_result make_mesh(run *r, laves_mesh **mesh) {
   return result;
 }
 
+/* Where the boundary is further from the surface than asked, smaller sizes are wished, as far as the distance falls with the
+ * square of the size; then all is made again. *again: it must be. */
+static laves_result refine_where_distant(run *r, laves_mesh **mesh, bool *again) {
+  enum { ROUNDS = 5, PLACES = 4096 };
+  static const double least_factor = 0.5, most_factor = 0.85;
+  const double wished = r->options->max_distance;
+  *again = false;
+  r->distant = 0;
+  if (!(wished > 0)) return LAVES_OK;
+  laves_place *place = laves__alloc(r->context, PLACES, sizeof *place);
+  if (!place) return laves__fail_memory(r->context, r->error);
+  begin_stage(r);
+  laves_result result = laves_check_distance(r->context, *mesh, r->domain, wished, place, PLACES, &r->distant, r->error);
+  const double floor = laves__size_floor(r->sizes);
+  for (size_t i = 0; result == LAVES_OK && r->round < ROUNDS && i < r->distant && i < PLACES; i++) {
+    const laves__vec3 local = v3_sub(v3(place[i].place[0], place[i].place[1], place[i].place[2]), r->frame.oracle->origin);
+    const double now = laves__octree_size(&r->tree, laves__frame_from_local(&r->frame, local)) * r->wishes.base;
+    const double factor = fmin(fmax(sqrt(wished / place[i].value), least_factor), most_factor);
+    if (now <= floor) continue;
+    if (!laves__wishes_add(&r->wishes, local, now * factor)) result = laves__fail_memory(r->context, r->error);
+    *again = true;
+  }
+  end_stage(r, "distance");
+  laves__free(r->context, place, PLACES, sizeof *place);
+  r->round++;
+  if (*again && result == LAVES_OK) {
+    laves_mesh_free(*mesh);
+    *mesh = NULL;
+  }
+  return result;
+}
+
 /* The last word on targets: what was asked and is not there. */
 static laves_result judge(run *r, const laves_mesh *mesh) {
   const laves_options *o = r->options;
@@ -302,6 +391,9 @@ static laves_result judge(run *r, const laves_mesh *mesh) {
   if (broken)
     warn(r, "%zu tetrahedra are outside the promised window of %g to %g degrees, which should not happen; please report it",
          broken, report->promised_min_dihedral, report->promised_max_dihedral);
+  if (r->distant)
+    warn(r, "at %zu places mesh and surface are further apart than the %g asked for; a smaller min_size may help", r->distant,
+         o->max_distance);
   const double wished = o->tet_target ? (double)o->tet_target : (double)o->vertex_target;
   const double got = o->tet_target ? (double)mesh->tet_count : (double)mesh->vertex_count;
   if (wished > 0 && fabs(got / wished - 1) > 0.03) {
@@ -309,7 +401,7 @@ static laves_result judge(run *r, const laves_mesh *mesh) {
          o->tet_target ? "tetrahedra" : "vertices", got);
     return LAVES_TARGET_MISSED;
   }
-  return LAVES_OK;
+  return r->distant ? LAVES_TARGET_MISSED : LAVES_OK;
 }
 
 laves_result laves_generate(laves_context *context, const laves_domain *domain, const laves_options *options, laves_mesh **mesh,
@@ -323,9 +415,13 @@ laves_result laves_generate(laves_context *context, const laves_domain *domain, 
   laves_result result = laves__options_check(options, error);
   if (result == LAVES_OK) result = choose_frame(&r);
   if (result == LAVES_OK) r.guarantee = laves__options_guarantee(options);
-  if (result == LAVES_OK) result = make_boundary(&r);
-  if (result == LAVES_OK) result = improve_and_keep_promise(&r);
-  if (result == LAVES_OK) result = make_mesh(&r, mesh);
+  if (result == LAVES_OK) result = choose_sizes(&r);
+  for (bool again = true; again && result == LAVES_OK;) {
+    result = make_boundary(&r);
+    if (result == LAVES_OK) result = improve_and_keep_promise(&r);
+    if (result == LAVES_OK) result = make_mesh(&r, mesh);
+    if (result == LAVES_OK) result = refine_where_distant(&r, mesh, &again);
+  }
   if (result == LAVES_OK) result = judge(&r, *mesh);
 
   if (result != LAVES_OK && result != LAVES_TARGET_MISSED) {
@@ -334,5 +430,9 @@ laves_result laves_generate(laves_context *context, const laves_domain *domain, 
   }
   laves__layer_free(&r.layer);
   laves__lattice_free(&r.lattice);
+  laves__graph_free(&r.graph);
+  laves__octree_free(&r.tree);
+  laves__wishes_free(&r.wishes);
+  laves__size_free(r.sizes);
   return result;
 }

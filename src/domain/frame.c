@@ -3,16 +3,16 @@
 
 enum { CHUNK = 64 };
 
-static laves__vec3 to_local(const laves__frame *frame, laves__vec3 lattice) {
+laves__vec3 laves__frame_to_local(const laves__frame *frame, laves__vec3 lattice) {
   return v3_mad(frame->centre, m3_mul(&frame->rotation, lattice), frame->size);
 }
 
-static laves__vec3 from_local(const laves__frame *frame, laves__vec3 local) {
+laves__vec3 laves__frame_from_local(const laves__frame *frame, laves__vec3 local) {
   return m3_mul_transposed(&frame->rotation, v3_scale(v3_sub(local, frame->centre), 1 / frame->size));
 }
 
 laves__vec3 laves__frame_to_input(const laves__frame *frame, laves__vec3 lattice) {
-  return v3_add(frame->oracle->origin, to_local(frame, lattice));
+  return v3_add(frame->oracle->origin, laves__frame_to_local(frame, lattice));
 }
 
 laves__box3 laves__frame_bounds(const laves__frame *frame) {
@@ -21,7 +21,7 @@ laves__box3 laves__frame_bounds(const laves__frame *frame) {
   for (int corner = 0; corner < 8; corner++) {
     const laves__vec3 local =
         v3(corner & 1 ? b.upper.x : b.lower.x, corner & 2 ? b.upper.y : b.lower.y, corner & 4 ? b.upper.z : b.lower.z);
-    bounds = box3_add(bounds, from_local(frame, local));
+    bounds = box3_add(bounds, laves__frame_from_local(frame, local));
   }
   return bounds;
 }
@@ -31,7 +31,7 @@ void laves__frame_evaluate(const laves__frame *frame, size_t count, const laves_
   const double per_size = 1 / frame->size;
   for (size_t begin = 0; begin < count; begin += CHUNK) {
     const size_t n = count - begin < CHUNK ? count - begin : CHUNK;
-    for (size_t i = 0; i < n; i++) local[i] = to_local(frame, points[begin + i]);
+    for (size_t i = 0; i < n; i++) local[i] = laves__frame_to_local(frame, points[begin + i]);
     frame->oracle->evaluate(frame->oracle->self, n, local, phi + begin, hints ? hints + begin : NULL);
     for (size_t i = 0; i < n; i++) phi[begin + i] *= per_size;
   }
@@ -41,8 +41,9 @@ bool laves__frame_project(const laves__frame *frame, laves__vec3 point, double r
                           laves__vec3 *normal) {
   const laves__oracle *oracle = frame->oracle;
   laves__vec3 local_foot, local_normal;
-  if (!oracle->project(oracle->self, to_local(frame, point), reach * frame->size, hint, &local_foot, &local_normal)) return false;
-  *foot = from_local(frame, local_foot);
+  if (!oracle->project(oracle->self, laves__frame_to_local(frame, point), reach * frame->size, hint, &local_foot, &local_normal))
+    return false;
+  *foot = laves__frame_from_local(frame, local_foot);
   *normal = m3_mul_transposed(&frame->rotation, local_normal);
   return v3_finite(*foot) && v3_finite(*normal);
 }
@@ -52,11 +53,11 @@ void laves__frame_project_many(const laves__frame *frame, size_t count, const la
   laves__vec3 local[CHUNK];
   for (size_t begin = 0; begin < count; begin += CHUNK) {
     const size_t n = count - begin < CHUNK ? count - begin : CHUNK;
-    for (size_t i = 0; i < n; i++) local[i] = to_local(frame, points[begin + i]);
+    for (size_t i = 0; i < n; i++) local[i] = laves__frame_to_local(frame, points[begin + i]);
     laves__project_many(frame->oracle, n, local, reach * frame->size, answers + begin);
     for (laves__projection *a = answers + begin; a < answers + begin + n; a++) {
       if (!a->found) continue;
-      a->foot = from_local(frame, a->foot);
+      a->foot = laves__frame_from_local(frame, a->foot);
       a->normal = m3_mul_transposed(&frame->rotation, a->normal);
       a->found = v3_finite(a->foot) && v3_finite(a->normal);
     }
@@ -72,5 +73,5 @@ laves__side laves__frame_side(const laves__frame *frame, laves__vec3 centre, dou
   const double h = half * frame->size * rounding;
   const laves__vec3 *row = frame->rotation.row;
   const laves__vec3 extent = v3(turned_half(row[0], h), turned_half(row[1], h), turned_half(row[2], h));
-  return frame->oracle->side(frame->oracle->self, to_local(frame, centre), h * sqrt3, extent);
+  return frame->oracle->side(frame->oracle->self, laves__frame_to_local(frame, centre), h * sqrt3, extent);
 }

@@ -16,6 +16,8 @@ typedef struct laves__frame {
   double size;
 } laves__frame;
 
+laves__vec3 laves__frame_to_local(const laves__frame *frame, laves__vec3 lattice);
+laves__vec3 laves__frame_from_local(const laves__frame *frame, laves__vec3 local);
 laves__vec3 laves__frame_to_input(const laves__frame *frame, laves__vec3 lattice);
 
 /* The axis-aligned box in lattice coordinates around the oracle's bounds. */

@@ -58,7 +58,7 @@ static laves_result mark_candidates(laves__sites *sites, laves_error *error) {
   if (!leaves) return laves__fail_memory(tree->context, error);
   for (size_t i = 0; i < tree->leaf_count; i++) {
     const laves__node *n = &tree->node[tree->leaf[i]];
-    if (n->plateau < 1) continue;
+    if (!n->plateau) continue;
     for (int k = 0; k < 8; k++) leaves[laves__key_find(&sites->corner, corner_key(n, k))]++;
     sites->gone[sites->corner.count + i] = laves__site_look(sites, sites->corner.count + i).colour >= 2;
   }

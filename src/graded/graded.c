@@ -24,14 +24,12 @@ static void measure_vertices(void *user, size_t begin, size_t end, int worker) {
 }
 
 laves_result laves__graded_background(const laves__frame *frame, const laves__demand *demand, laves_context *context,
-                                      laves__graph *graph, laves_error *error) {
-  laves__octree tree;
+                                      laves__octree *tree, laves__graph *graph, laves_error *error) {
   laves__sites sites = {0};
-  laves_result result = laves__octree_build(frame, demand, context, &tree, error);
-  if (result == LAVES_OK) result = laves__sites_make(&tree, &sites, error);
-  if (result == LAVES_OK) result = laves__tiles_make(&tree, &sites, graph, error);
+  laves_result result = laves__octree_build(frame, demand, context, tree, error);
+  if (result == LAVES_OK) result = laves__sites_make(tree, &sites, error);
+  if (result == LAVES_OK) result = laves__tiles_make(tree, &sites, graph, error);
   laves__sites_free(&sites);
-  laves__octree_free(&tree);
   if (result == LAVES_OK) result = laves__graph_link(graph, error);
   if (result == LAVES_OK && !laves__parallel_for(context, "background", graph->vertex_count, 256, measure_vertices, graph))
     result = laves__fail_cancelled(error);
@@ -83,7 +81,7 @@ laves_result laves__graded_estimate(const laves__frame *frame, const laves__dema
     result = laves__fail_cancelled(error);
   } else {
     for (size_t i = 0; i < tree.leaf_count; i++) {
-      const bool plateau = tree.node[tree.leaf[i]].plateau > 0;
+      const bool plateau = tree.node[tree.leaf[i]].plateau;
       *tets += e.share[i] * (plateau ? c15_tets : bcc_tets);
       *vertices += e.share[i] * (plateau ? c15_vertices : bcc_vertices);
     }

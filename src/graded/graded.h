@@ -16,10 +16,10 @@
 #include "background/graph.h"
 #include "graded/octree.h"
 
-/* Fills an empty graph, with its lists. LAVES_ERROR_OPTION when the field asks for too much, LAVES_ERROR_MEMORY,
- * LAVES_ERROR_CANCELLED. */
+/* Fills an empty graph, with its lists, and the octree from which it comes; both to be freed by the caller, also after an
+ * error. LAVES_ERROR_OPTION when the field asks for too much, LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
 laves_result laves__graded_background(const laves__frame *frame, const laves__demand *demand, laves_context *context,
-                                      laves__graph *graph, laves_error *error);
+                                      laves__octree *tree, laves__graph *graph, laves_error *error);
 
 /* About how many tets and vertices the mesh will have, from the leaves alone. */
 laves_result laves__graded_estimate(const laves__frame *frame, const laves__demand *demand, laves_context *context, double *tets,

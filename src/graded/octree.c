@@ -36,6 +36,14 @@ int32_t laves__octree_locate(const laves__octree *tree, int32_t x, int32_t y, in
   return index;
 }
 
+double laves__octree_size(const laves__octree *tree, laves__vec3 point) {
+  const laves__vec3 p = v3_scale(v3_sub(point, tree->lower), 1 / tree->unit);
+  const double side = tree->node->side;
+  if (!(p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < side && p.y < side && p.z < side)) return 0;
+  const laves__node *n = &tree->node[laves__octree_locate(tree, (int32_t)p.x, (int32_t)p.y, (int32_t)p.z)];
+  return n->outside ? 0 : (double)n->size;
+}
+
 static laves__vec3 centre_of(const laves__octree *tree, const laves__node *n) {
   const double half = 0.5 * n->side;
   return laves__octree_point(tree, n->at[0] + half, n->at[1] + half, n->at[2] + half);
@@ -318,41 +326,21 @@ static size_t walk(const laves__octree *tree, int32_t index, int32_t *list, size
   return count + 1;
 }
 
-/* Whether all 26 cubes of the same side around a leaf are leaves of a plateau of at least `depth`. */
-static bool is_surrounded(const laves__octree *tree, const laves__node *n, int depth) {
-  for (int k = 0; k < 27; k++) {
-    const int32_t around = laves__octree_locate(tree, n->at[0] + (k % 3 - 1) * n->side, n->at[1] + (k / 3 % 3 - 1) * n->side,
-                                                n->at[2] + (k / 9 - 1) * n->side);
-    if (around < 0) return false;
-    const laves__node *other = &tree->node[around];
-    if (other->outside || other->side != n->side || other->plateau < depth) return false;
+/* Whether all leaves that touch a leaf are as large as it, or outside, where they have no corners. */
+static bool is_surrounded(const laves__octree *tree, int32_t leaf, int8_t (*probe)[3]) {
+  for (int k = 0; k < PROBES; k++) {
+    const int32_t around = probe_leaf(tree, leaf, probe[k]);
+    if (around >= 0 && !tree->node[around].outside && tree->node[around].side != tree->node[leaf].side) return false;
   }
   return true;
 }
 
-typedef struct plateau_search {
-  const laves__octree *tree;
-  int depth;
-  bool *found; /* [leaf_count] */
-} plateau_search;
-
 static void find_plateaus(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
-  const plateau_search *s = user;
-  for (size_t i = begin; i < end; i++) s->found[i] = is_surrounded(s->tree, &s->tree->node[s->tree->leaf[i]], s->depth - 1);
-}
-
-static laves_result measure_plateaus(laves__octree *tree, laves_error *error) {
-  plateau_search s = {tree, 1, laves__alloc(tree->context, tree->leaf_count, sizeof *s.found)};
-  if (!s.found) return laves__fail_memory(tree->context, error);
-  bool done = true;
-  for (; done && s.depth <= 2; s.depth++) {
-    done = laves__parallel_for(tree->context, "background", tree->leaf_count, 64, find_plateaus, &s);
-    for (size_t i = 0; done && i < tree->leaf_count; i++)
-      if (s.found[i]) tree->node[tree->leaf[i]].plateau = (int8_t)s.depth;
-  }
-  laves__free(tree->context, s.found, tree->leaf_count, sizeof *s.found);
-  return done ? LAVES_OK : laves__fail_cancelled(error);
+  laves__octree *tree = user;
+  int8_t probe[PROBES][3];
+  list_probes(probe);
+  for (size_t i = begin; i < end; i++) tree->node[tree->leaf[i]].plateau = is_surrounded(tree, tree->leaf[i], probe);
 }
 
 laves_result laves__octree_build(const laves__frame *frame, const laves__demand *demand, laves_context *context,
@@ -369,7 +357,8 @@ laves_result laves__octree_build(const laves__frame *frame, const laves__demand 
   if (!tree->leaf) return laves__fail_memory(context, error);
   walk(tree, 0, tree->leaf, 0);
   for (size_t i = 0; i < tree->leaf_count; i++) tree->node[tree->leaf[i]].order = (int32_t)i;
-  return measure_plateaus(tree, error);
+  if (!laves__parallel_for(context, "background", tree->leaf_count, 64, find_plateaus, tree)) return laves__fail_cancelled(error);
+  return LAVES_OK;
 }
 
 void laves__octree_free(laves__octree *tree) {

@@ -53,8 +53,10 @@ static void make(laves_context *context, const char *solid, const spots *s, lave
   const laves__frame frame = {
       .oracle = &domain->oracle, .rotation = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, .size = 1, .centre = {0, 0, 0}};
   const laves__demand demand = {.self = s, .evaluate = wish_all, .grading = s->growth, .smallest = 0.12, .largest = s->largest};
+  laves__octree tree;
   memset(graph, 0, sizeof *graph);
-  if (laves__graded_background(&frame, &demand, context, graph, &error) != LAVES_OK) fail_msg("%s", error.text);
+  if (laves__graded_background(&frame, &demand, context, &tree, graph, &error) != LAVES_OK) fail_msg("%s", error.text);
+  laves__octree_free(&tree);
   laves_domain_free(domain);
 }
 
@@ -275,7 +277,9 @@ static void sizes_beyond_measure_are_refused(void **state) {
   const spots s = random_spots(1, 0.3);
   const laves__demand demand = {.self = &s, .evaluate = wish_all, .grading = 0.3, .smallest = 1e-9, .largest = 1};
   laves__graph g = {0};
-  assert_int_equal(laves__graded_background(&frame, &demand, context, &g, &error), LAVES_ERROR_OPTION);
+  laves__octree tree;
+  assert_int_equal(laves__graded_background(&frame, &demand, context, &tree, &g, &error), LAVES_ERROR_OPTION);
+  laves__octree_free(&tree);
   laves__graph_free(&g);
   laves_domain_free(domain);
   laves_context_free(context);
