@@ -259,6 +259,44 @@ static void threads_change_nothing(void **state) {
   }
 }
 
+/* All stages within a limit; *before: the most bytes there were before the first stage, *peak: in all. */
+static laves_result run_limited(size_t limit, size_t *before, size_t *peak) {
+  laves_context_options options = laves_context_options_default();
+  options.memory_limit = limit;
+  stages s;
+  memset(&s, 0, sizeof s);
+  s.context = laves_context_create(&options);
+  laves_error error;
+  laves__snap_counts counts = {0};
+  laves_mesh *mesh = NULL;
+  noise n = {.kind = NOISE_FRACTAL, .seed = 1, .scale = 2};
+  const laves_function function = noise_function(&n);
+  must(laves_domain_from_function(s.context, &function, &s.domain, &error), &error);
+  s.frame = (laves__frame){.oracle = &s.domain->oracle, .rotation = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, .size = 0.3};
+  laves__graph graph = graph_of_cubes(s.context, 8);
+  *before = laves_context_peak_bytes(s.context);
+  laves_result result = laves__lattice_of_graph(s.context, &graph, &s.lattice, &error);
+  if (result == LAVES_OK) result = laves__classify(&s.frame, &s.lattice, &error);
+  if (result == LAVES_OK) result = laves__snap(&s.frame, &s.lattice, &s.layer, &counts, &error);
+  if (result == LAVES_OK) result = laves__assemble(&s.frame, &s.lattice, &s.layer, &mesh, &error);
+  *peak = laves_context_peak_bytes(s.context);
+  laves_mesh_free(mesh);
+  laves__graph_free(&graph);
+  stages_end(&s);
+  return result;
+}
+
+static void short_memory_is_told(void **state) {
+  (void)state;
+  enum { STEPS = 40 };
+  size_t before, peak, first, last;
+  assert_int_equal(run_limited(0, &before, &peak), LAVES_OK);
+  for (size_t step = 0; step < STEPS; step++) {
+    const laves_result result = run_limited(before + (peak - before) * step / STEPS, &first, &last);
+    assert_int_equal(result, LAVES_ERROR_MEMORY);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(tiles_give_the_mesh_of_the_tiling),
@@ -268,6 +306,7 @@ int main(void) {
       cmocka_unit_test(hard_solids_are_valid_or_nothing),
       cmocka_unit_test(noise_is_valid),
       cmocka_unit_test(threads_change_nothing),
+      cmocka_unit_test(short_memory_is_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
