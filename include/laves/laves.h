@@ -534,8 +534,9 @@ typedef struct laves_certificate {
   bool promise_holds;  ///< every tet is inside the promised window by more than the margin; true without a promise
   double asked_min_dihedral, asked_max_dihedral, asked_volume_length;
 
-  double distance_asked;       ///< the distance from which on places count as DISTANT; 0: not looked for
-  double off_surface_asked;    ///< the distance from which on boundary vertices count as OFF_SURFACE; 0: not looked for
+  double distance_asked;       ///< the distance from which on places count as DISTANT; 0: not looked for. Where the boundary's
+                               ///< edges are nearest to twice, half, ... the mean edge, it is so many times as much
+  double off_surface_asked;    ///< the distance from which on boundary vertices count as OFF_SURFACE, likewise; 0: not looked for
   char to_surface_reason[96];  ///< why an upper bound of the distance is not known; empty where it is
   char from_surface_reason[96];
 

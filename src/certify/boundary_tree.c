@@ -7,13 +7,15 @@
  * The nearest point of a triangle by Voronoi regions: [ericson2005], section 5.1.5. */
 #include "certify/boundary_tree.h"
 
-enum { LEAF_TRIANGLES = 4, MORTON_BITS = 21, STACK = 64 };
+enum { LEAF_TRIANGLES = 4, MORTON_BITS = 21, STACK = 64, NO_LEVEL = INT8_MAX };
 
 /* Keeps the nearest triangle below a caller's bound that was rounded, or that it just meets. */
 #define BOUND_SLACK 1e-9
 
 typedef struct triangle {
   laves__vec3 a, b, c;
+  float edge; /* local */
+  int level;
 } triangle;
 
 struct laves__boundary_tree {
@@ -21,6 +23,8 @@ struct laves__boundary_tree {
   size_t triangle_capacity, triangle_count, leaf_count; /* leaf_count: a power of two */
   triangle *triangles;
   laves__box3 *boxes; /* [2 leaf_count], [0] unused */
+  int8_t *levels;     /* [2 leaf_count] the least in each box */
+  int greatest;       /* of all levels */
 };
 
 /* ---- one triangle, one box ---- */
@@ -73,7 +77,7 @@ static uint64_t morton(laves__vec3 p, const laves__box3 *b) {
 
 static triangle triangle_of(const laves_mesh *mesh, const int32_t face[3], laves__vec3 origin) {
   const laves__vec3 *p = mesh->points;
-  return (triangle){v3_sub(p[face[0]], origin), v3_sub(p[face[1]], origin), v3_sub(p[face[2]], origin)};
+  return (triangle){.a = v3_sub(p[face[0]], origin), .b = v3_sub(p[face[1]], origin), .c = v3_sub(p[face[2]], origin)};
 }
 
 static laves__vec3 middle(const triangle *t) { return v3_scale(v3_add(t->a, v3_add(t->b, t->c)), 1.0 / 3); }
@@ -102,20 +106,40 @@ static size_t sort_triangles(const laves_mesh *mesh, const laves__boundary *boun
 static void fill_boxes(laves__boundary_tree *tree) {
   for (size_t leaf = 0; leaf < tree->leaf_count; leaf++) {
     laves__box3 *box = &tree->boxes[tree->leaf_count + leaf];
+    int8_t *least = &tree->levels[tree->leaf_count + leaf];
     *box = box3_empty();
+    *least = NO_LEVEL;
     for (size_t i = leaf * LEAF_TRIANGLES; i < (leaf + 1) * LEAF_TRIANGLES && i < tree->triangle_count; i++) {
       const triangle *t = &tree->triangles[i];
       *box = box3_add(box3_add(box3_add(*box, t->a), t->b), t->c);
+      if (t->level < *least) *least = (int8_t)t->level;
     }
   }
   for (size_t i = tree->leaf_count - 1; i >= 1; i--) {
     const laves__box3 *low = &tree->boxes[2 * i], *high = &tree->boxes[2 * i + 1];
     tree->boxes[i] = (laves__box3){v3_min(low->lower, high->lower), v3_max(low->upper, high->upper)};
+    const int8_t a = tree->levels[2 * i], b = tree->levels[2 * i + 1];
+    tree->levels[i] = a < b ? a : b;
+  }
+}
+
+/* The triangles in their order, with what is known of their edges. */
+static void fill_triangles(const laves_mesh *mesh, const laves__boundary *boundary, laves__vec3 origin, const float *edges,
+                           double base, const laves__keyed *order, laves__boundary_tree *tree) {
+  tree->greatest = -NO_LEVEL;
+  for (size_t i = 0; i < tree->triangle_count; i++) {
+    const int32_t *face = boundary->faces[order[i].value];
+    triangle *t = &tree->triangles[i];
+    *t = triangle_of(mesh, face, origin);
+    if (edges) t->edge = (float)laves__local_edge(edges, face);
+    t->level = laves__edge_level((double)t->edge, base);
+    if (t->level > tree->greatest) tree->greatest = t->level;
   }
 }
 
 laves_result laves__boundary_tree_build(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
-                                        laves__vec3 origin, laves__boundary_tree **tree, laves_error *error) {
+                                        laves__vec3 origin, const float *edges, double base, laves__boundary_tree **tree,
+                                        laves_error *error) {
   const size_t count = boundary->count;
   laves_result result = LAVES_OK;
   laves__boundary_tree *made = laves__alloc_zeroed(context, 1, sizeof *made);
@@ -131,13 +155,13 @@ laves_result laves__boundary_tree_build(laves_context *context, const laves_mesh
   while (made->leaf_count * LEAF_TRIANGLES < count) made->leaf_count *= 2;
   made->triangles = laves__alloc(context, count, sizeof *made->triangles);
   made->boxes = laves__alloc(context, 2 * made->leaf_count, sizeof *made->boxes);
-  if (!made->triangles || !made->boxes) {
+  made->levels = laves__alloc(context, 2 * made->leaf_count, sizeof *made->levels);
+  if (!made->triangles || !made->boxes || !made->levels) {
     result = laves__fail_memory(context, error);
     goto clean_up;
   }
   made->triangle_count = sort_triangles(mesh, boundary, origin, order, scratch);
-  for (size_t i = 0; i < made->triangle_count; i++)
-    made->triangles[i] = triangle_of(mesh, boundary->faces[order[i].value], origin);
+  fill_triangles(mesh, boundary, origin, edges, base, order, made);
   fill_boxes(made);
   *tree = made;
   made = NULL;
@@ -156,20 +180,24 @@ void laves__boundary_tree_free(laves__boundary_tree *tree) {
   laves_context *context = tree->context;
   laves__free(context, tree->triangles, tree->triangle_capacity, sizeof *tree->triangles);
   laves__free(context, tree->boxes, 2 * tree->leaf_count, sizeof *tree->boxes);
+  laves__free(context, tree->levels, 2 * tree->leaf_count, sizeof *tree->levels);
   laves__free(context, tree, 1, sizeof *tree);
 }
 
 /* ---- queries ---- */
 
-static double leaf_nearest2(const laves__boundary_tree *tree, size_t leaf, laves__vec3 p, double best) {
+static double leaf_nearest2(const laves__boundary_tree *tree, size_t leaf, laves__vec3 p, double best, float *edge) {
   for (size_t i = leaf * LEAF_TRIANGLES; i < (leaf + 1) * LEAF_TRIANGLES && i < tree->triangle_count; i++) {
     const triangle *t = &tree->triangles[i];
-    best = fmin(best, nearest2(v3_sub(t->a, p), v3_sub(t->b, p), v3_sub(t->c, p)));
+    const double distance2 = nearest2(v3_sub(t->a, p), v3_sub(t->b, p), v3_sub(t->c, p));
+    if (!(distance2 < best)) continue;
+    best = distance2;
+    *edge = t->edge;
   }
   return best;
 }
 
-double laves__boundary_tree_distance(const laves__boundary_tree *tree, laves__vec3 point, double bound) {
+double laves__boundary_tree_distance(const laves__boundary_tree *tree, laves__vec3 point, double bound, float *edge) {
   struct {
     size_t node;
     double distance2;
@@ -183,7 +211,7 @@ double laves__boundary_tree_distance(const laves__boundary_tree *tree, laves__ve
     const size_t node = stack[--depth].node;
     if (stack[depth].distance2 >= best) continue;
     if (node >= tree->leaf_count) {
-      best = leaf_nearest2(tree, node - tree->leaf_count, point, best);
+      best = leaf_nearest2(tree, node - tree->leaf_count, point, best, edge);
       continue;
     }
     const double low = box_distance2(&tree->boxes[2 * node], point), high = box_distance2(&tree->boxes[2 * node + 1], point);
@@ -194,4 +222,36 @@ double laves__boundary_tree_distance(const laves__boundary_tree *tree, laves__ve
     stack[depth++].distance2 = fmin(low, high);
   }
   return sqrt(best);
+}
+
+void laves__boundary_tree_levels(const laves__boundary_tree *tree, int *least, int *greatest) {
+  *least = tree->triangle_count ? tree->levels[1] : 0;
+  *greatest = tree->triangle_count ? tree->greatest : 0;
+}
+
+/* By the triangles' boxes: a leaf may hold triangles far from one another. */
+static int8_t leaf_level(const laves__boundary_tree *tree, size_t leaf, laves__vec3 p, double radius, int8_t least) {
+  for (size_t i = leaf * LEAF_TRIANGLES; i < (leaf + 1) * LEAF_TRIANGLES && i < tree->triangle_count; i++) {
+    const triangle *t = &tree->triangles[i];
+    const laves__box3 box = box3_add(box3_add(box3_add(box3_empty(), t->a), t->b), t->c);
+    if (t->level < least && box_distance2(&box, p) <= radius * radius) least = (int8_t)t->level;
+  }
+  return least;
+}
+
+int laves__boundary_tree_level(const laves__boundary_tree *tree, laves__vec3 point, double radius) {
+  size_t stack[STACK] = {1};
+  int depth = 1;
+  int8_t least = NO_LEVEL;
+  while (depth > 0) {
+    const size_t node = stack[--depth];
+    if (tree->levels[node] >= least || box_distance2(&tree->boxes[node], point) > radius * radius) continue;
+    if (node >= tree->leaf_count) {
+      least = leaf_level(tree, node - tree->leaf_count, point, radius, least);
+      continue;
+    }
+    stack[depth++] = 2 * node + 1;
+    stack[depth++] = 2 * node;
+  }
+  return least == NO_LEVEL ? 0 : least;
 }

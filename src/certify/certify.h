@@ -39,6 +39,17 @@ laves_result laves__find_boundary(laves_context *context, const laves_mesh *mesh
 /* Shortest, longest and mean edge, each edge once. */
 laves_result laves__check_edges(laves_context *context, const laves_mesh *mesh, laves_check *check, laves_error *error);
 
+/* ---- local sizes ---- */
+
+/* The smoothed length of the boundary's edges at each of its vertices, 0 at other vertices: float[vertex_count], for
+ * laves__free(); NULL when memory is short. */
+float *laves__local_edges(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary);
+/* The same on a face of the boundary. */
+double laves__local_edge(const float *edges, const int32_t face[3]);
+
+/* The exponent of the power of two nearest to edge / base; 0 when either is not known. */
+int laves__edge_level(double edge, double base);
+
 /* ---- distances ---- */
 
 /* One measured place, in the coordinates of the mesh. */
@@ -48,6 +59,7 @@ typedef struct laves__sample {
   double weight;   /* in means; 0 for samples that only look for the largest distance */
   int64_t vertex;  /* of the mesh; -1: a point of an edge or face, or of the surface */
   double slack;    /* the true distance is no larger than `distance` plus this; NAN: not known */
+  float edge;      /* local edge of the boundary near by; 0: not known */
 } laves__sample;
 
 /* Samples in a fixed order: first [0, boundary_count) on the boundary of the mesh with their distances to the domain's surface,
@@ -56,6 +68,8 @@ typedef struct laves__samples {
   laves_context *context;
   laves__sample *items;
   size_t count, boundary_count, capacity;
+  float *edges; /* [vertex_count] laves__local_edges() */
+  size_t vertex_count;
   double spacing;                           /* mean edge of the boundary */
   double boundary_cover, surface_cover;     /* how far a point of that side can be from its nearest sample; NAN: unknown */
   double boundary_at_most, surface_at_most; /* no point of that side is further from the other; NAN: unknown */
@@ -63,8 +77,8 @@ typedef struct laves__samples {
 
 void laves__samples_free(laves__samples *samples);
 
-/* Measures both ways, about six samples a boundary face and five a face's area of the surface. *samples: owned by the
- * caller on success. */
+/* Measures both ways, about six samples a boundary face and five the area of a face, of the faces near by, of the surface.
+ * *samples: owned by the caller on success. */
 laves_result laves__measure_distances(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
                                       const laves_domain *domain, laves__samples *samples, laves_error *error);
 
@@ -72,17 +86,29 @@ laves_result laves__measure_distances(laves_context *context, const laves_mesh *
 laves_result laves__check_distances(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
                                     const laves_domain *domain, laves_check *check, laves__samples *samples, laves_error *error);
 
-/* The places where samples are further than `distance` from the other side; see laves_check_distance(). */
+/* The places where samples are further than a limit from the other side; see laves_check_distance(). The limit is `distance`
+ * times the power of two nearest to the local edge over `base`, and places further beyond their limits come first; base 0: it is
+ * the same everywhere. limits: out, double[capacity], or NULL. */
 laves_result laves__distant_places(laves_context *context, const laves__samples *samples, const laves_domain *domain,
-                                   double distance, laves_place *places, size_t capacity, size_t *count, laves_error *error);
+                                   double distance, double base, laves_place *places, double *limits, size_t capacity,
+                                   size_t *count, laves_error *error);
 
 /* How far a point of a triangle can be from the nearest of its corners. */
 double laves__corner_cover(laves__vec3 a, laves__vec3 b, laves__vec3 c);
 
-/* Samples of a domain's surface (local coordinates), about `spacing` apart, for domains that offer none themselves.
- * Returns how many, at most `capacity`; none when the search would cost too much at that spacing. */
-size_t laves__sample_surface(laves_context *context, const laves__oracle *oracle, double spacing, laves__vec3 *points,
-                             size_t capacity);
+struct laves__boundary_tree;
+
+/* A sample of a surface, and the share of the surface that it stands for, up to a common factor. */
+typedef struct laves__surface_sample {
+  laves__vec3 point;
+  double weight;
+} laves__surface_sample;
+
+/* Samples of a domain's surface (local coordinates), about `spacing` apart times the power of two that the tree tells of the
+ * edges near by, for domains that offer none themselves. Returns how many, at most `capacity`; none when the search would
+ * cost too much at that spacing. */
+size_t laves__sample_surface(laves_context *context, const laves__oracle *oracle, const struct laves__boundary_tree *tree,
+                             double spacing, laves__surface_sample *samples, size_t capacity);
 
 /* The smallest radius of curvature of the domain's surface within about `reach` of a point (coordinates of the mesh),
  * seen at that scale; INFINITY where it is flat or absent. */

@@ -5,8 +5,9 @@
  * corners) carry the mean, each a quarter of the triangle's area; vertices and midpoints only look for the maximum.
  * From the surface: where it is made of flat faces, these are halved across their longest edge until every point of a
  * piece is within a third of the mean boundary edge of the piece's centroid; the centroids look for the nearest boundary
- * triangle, each with the weight of its piece. Other domains offer samples of their own. Projection starts with a short reach,
- * which is fast, and widens it while nothing is found.
+ * triangle, each with the weight of its piece. Other domains offer samples of their own. Where the boundary's edges near by
+ * are shorter or longer than their mean, by a power of two, so are the ways between samples. Projection starts with a short
+ * reach, which is fast, and widens it while nothing is found.
  *
  * Distance to a set changes by no more than the way one goes. So where it is known how far a point can be from the nearest
  * sample (the cover), the largest distance is known from both sides: sampled <= true <= sampled + cover. The samples of a
@@ -37,7 +38,10 @@ enum { CHUNK = 256, SAMPLES_PER_FACE = 4 + 3 + 3, INNER = 4 };
 #define SURFACE_SAMPLES_MAX 8e6
 
 void laves__samples_free(laves__samples *samples) {
-  if (samples->context) laves__free(samples->context, samples->items, samples->capacity, sizeof *samples->items);
+  if (samples->context) {
+    laves__free(samples->context, samples->items, samples->capacity, sizeof *samples->items);
+    laves__free(samples->context, samples->edges, samples->vertex_count, sizeof *samples->edges);
+  }
   *samples = (laves__samples){0};
 }
 
@@ -69,7 +73,9 @@ static double mean_edge(const laves_mesh *mesh, const laves__boundary *boundary,
   return count ? sum / (double)count : 0;
 }
 
-static laves__sample sample_at(laves__vec3 point, double weight) { return (laves__sample){point, NAN, weight, -1, 0}; }
+static laves__sample sample_at(laves__vec3 point, double weight, double edge) {
+  return (laves__sample){.point = point, .distance = NAN, .weight = weight, .vertex = -1, .edge = (float)edge};
+}
 
 /* In an acute triangle the circumcentre is furthest; else the points of the longest edge that are as far from one of its ends
  * as from the corner opposite. */
@@ -103,15 +109,16 @@ static void add_face_samples(const laves_mesh *mesh, const int32_t face[3], uint
   laves__vec3 p[3];
   for (int i = 0; i < 3; i++) p[i] = mesh->points[face[i]];
   if (!v3_finite(p[0]) || !v3_finite(p[1]) || !v3_finite(p[2])) return;
+  const double edge = laves__local_edge(samples->edges, face);
   for (int i = 0; i < 3; i++) {
-    if (!seen[face[i]]) *next++ = (laves__sample){p[i], NAN, 0, face[i], 0};
+    if (!seen[face[i]]) *next++ = (laves__sample){p[i], NAN, 0, face[i], 0, samples->edges[face[i]]};
     seen[face[i]] = 1;
-    if (face[i] < face[(i + 1) % 3]) *next++ = sample_at(v3_lerp(p[i], p[(i + 1) % 3], 0.5), 0);
+    if (face[i] < face[(i + 1) % 3]) *next++ = sample_at(v3_lerp(p[i], p[(i + 1) % 3], 0.5), 0, edge);
   }
   const double weight = v3_norm(v3_cross(v3_sub(p[1], p[0]), v3_sub(p[2], p[0]))) / (2 * INNER);
   const laves__vec3 centroid = v3_scale(v3_add(p[0], v3_add(p[1], p[2])), 1.0 / 3);
-  *next++ = sample_at(centroid, weight);
-  for (int i = 0; i < 3; i++) *next++ = sample_at(v3_lerp(centroid, p[i], 0.5), weight);
+  *next++ = sample_at(centroid, weight, edge);
+  for (int i = 0; i < 3; i++) *next++ = sample_at(v3_lerp(centroid, p[i], 0.5), weight, edge);
   samples->count = (size_t)(next - samples->items);
   samples->boundary_cover = fmax(samples->boundary_cover, face_cover(p));
 }
@@ -145,19 +152,24 @@ static bool has_both_signs(const measuring *m, laves__vec3 foot, laves__vec3 nor
   return inside > 0 && inside < AROUND;
 }
 
+/* The mean edge near a sample, as a power of two of that of the boundary. */
+static double edge_at(const measuring *m, const laves__sample *sample) {
+  return ldexp(m->samples->spacing, laves__edge_level((double)sample->edge, m->samples->spacing));
+}
+
 /* How far from a foot the solid's boundary passes at most; NAN when that is not seen within a hundredth of an edge. */
-static double foot_slack(const measuring *m, laves__vec3 foot, laves__vec3 normal) {
+static double foot_slack(const measuring *m, laves__vec3 foot, laves__vec3 normal, double edge) {
   if (m->oracle->flat_face) return 0;
-  for (double step = FOOT_STEP * m->samples->spacing; step <= FOOT_STEP_MAX * m->samples->spacing; step *= 10)
+  for (double step = FOOT_STEP * edge; step <= FOOT_STEP_MAX * edge; step *= 10)
     if (has_both_signs(m, foot, normal, step)) return step * COVER_SLACK;
   return NAN;
 }
 
 /* Without a foot a point may itself stand on the surface, where a gradient may vanish; else the value of a true distance serves.
  */
-static double distance_without_foot(const measuring *m, laves__vec3 local, double *slack) {
+static double distance_without_foot(const measuring *m, laves__vec3 local, double edge, double *slack) {
   double phi;
-  *slack = m->oracle->flat_face ? NAN : foot_slack(m, local, v3(0, 0, 1));
+  *slack = m->oracle->flat_face ? NAN : foot_slack(m, local, v3(0, 0, 1), edge);
   if (!isnan(*slack)) return 0;
   if (!m->oracle->is_distance) return NAN;
   m->oracle->evaluate(m->oracle->self, 1, &local, &phi, NULL);
@@ -166,15 +178,16 @@ static double distance_without_foot(const measuring *m, laves__vec3 local, doubl
 }
 
 /* `first` is what was found within the first reach. */
-static double distance_to_surface(const measuring *m, laves__vec3 local, const laves__projection *first, double *slack) {
+static double distance_to_surface(const measuring *m, laves__vec3 local, const laves__projection *first, double edge,
+                                  double *slack) {
   laves__projection answer = *first;
   for (double reach = m->reach; !answer.found; reach *= REACH_GROWTH) {
-    if (reach >= m->reach_max) return distance_without_foot(m, local, slack);
+    if (reach >= m->reach_max) return distance_without_foot(m, local, edge, slack);
     answer.hint = LAVES__NO_HINT;
     const double next = fmin(reach * REACH_GROWTH, m->reach_max);
     answer.found = m->oracle->project(m->oracle->self, local, next, &answer.hint, &answer.foot, &answer.normal);
   }
-  *slack = foot_slack(m, answer.foot, answer.normal);
+  *slack = foot_slack(m, answer.foot, answer.normal, edge);
   return v3_distance(local, answer.foot);
 }
 
@@ -206,7 +219,8 @@ static void project_chunks(void *user, size_t begin, size_t end, int worker) {
     laves__projection first[CHUNK];
     for (size_t i = 0; i < count; i++) local[i] = v3_sub(samples[i].point, m->oracle->origin);
     find_first(m, count, local, first);
-    for (size_t i = 0; i < count; i++) samples[i].distance = distance_to_surface(m, local[i], &first[i], &samples[i].slack);
+    for (size_t i = 0; i < count; i++)
+      samples[i].distance = distance_to_surface(m, local[i], &first[i], edge_at(m, &samples[i]), &samples[i].slack);
   }
 }
 
@@ -220,15 +234,25 @@ static void nearest_chunks(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   for (size_t chunk = begin; chunk < end; chunk++)
     for (size_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < count; i++) {
+      const laves__vec3 local = v3_sub(samples[i].point, m->oracle->origin);
       double bound = INFINITY;
-      if (i > chunk * CHUNK) bound = samples[i - 1].distance + v3_distance(samples[i - 1].point, samples[i].point);
-      samples[i].distance = laves__boundary_tree_distance(m->tree, v3_sub(samples[i].point, m->oracle->origin), bound);
+      if (i > chunk * CHUNK) {
+        bound = samples[i - 1].distance + v3_distance(samples[i - 1].point, samples[i].point);
+        samples[i].edge = samples[i - 1].edge;
+      }
+      samples[i].distance = laves__boundary_tree_distance(m->tree, local, bound, &samples[i].edge);
     }
 }
 
-static double boundary_area(const laves__samples *samples) {
+/* The area of the boundary, and what it would be if it were stretched until all local edges were as long as the mean. */
+static double boundary_area(const laves__samples *samples, double *stretched) {
   double area = 0;
-  for (size_t i = 0; i < samples->count; i++) area += samples->items[i].weight;
+  *stretched = 0;
+  for (size_t i = 0; i < samples->boundary_count; i++) {
+    const laves__sample *s = &samples->items[i];
+    area += s->weight;
+    *stretched += ldexp(s->weight, -2 * laves__edge_level((double)s->edge, samples->spacing));
+  }
   return area;
 }
 
@@ -236,15 +260,24 @@ static double boundary_area(const laves__samples *samples) {
 typedef struct flat_samples {
   laves__sample *items;
   size_t count, most;
-  double reach, cover;
+  double reach, cover; /* reach: where edges are as long as the mean */
   laves__vec3 origin;
+  const laves__boundary_tree *tree;
+  int least, greatest; /* levels of edges */
 } flat_samples;
+
+/* Whether a piece is too wide for the edges near by. */
+static bool is_wide(const flat_samples *list, laves__vec3 centroid, double radius) {
+  if (radius > ldexp(list->reach, list->greatest)) return true;
+  if (radius <= ldexp(list->reach, list->least)) return false;
+  return radius > ldexp(list->reach, laves__boundary_tree_level(list->tree, centroid, radius));
+}
 
 /* Halves a triangle until its centroid is near to all of it. */
 static void sample_piece(flat_samples *list, laves__vec3 a, laves__vec3 b, laves__vec3 c) {
   const laves__vec3 centroid = v3_scale(v3_add(a, v3_add(b, c)), 1.0 / 3);
   const double radius = fmax(v3_distance(centroid, a), fmax(v3_distance(centroid, b), v3_distance(centroid, c)));
-  if (radius > list->reach && list->count < list->most) {
+  if (list->count < list->most && is_wide(list, centroid, radius)) {
     const double x = v3_norm2(v3_sub(c, b)), y = v3_norm2(v3_sub(a, c)), z = v3_norm2(v3_sub(b, a));
     const laves__vec3 p = z >= x && z >= y ? c : x >= y ? a : b; /* opposite the longest edge, then the others in turn */
     const laves__vec3 q = z >= x && z >= y ? a : x >= y ? b : c, r = z >= x && z >= y ? b : x >= y ? c : a;
@@ -255,7 +288,7 @@ static void sample_piece(flat_samples *list, laves__vec3 a, laves__vec3 b, laves
   }
   if (list->items) {
     const double area = v3_norm(v3_cross(v3_sub(b, a), v3_sub(c, a))) / 2;
-    list->items[list->count] = sample_at(v3_add(centroid, list->origin), area);
+    list->items[list->count] = sample_at(v3_add(centroid, list->origin), area, 0);
     list->cover = fmax(list->cover, radius * COVER_SLACK);
   }
   list->count++;
@@ -273,7 +306,8 @@ static void sample_flat_faces(flat_samples *list, const laves__oracle *oracle) {
 /* Counts, with wider samples when there are too many, then fills. */
 static laves_result list_flat_samples(laves_context *context, const measuring *m, double spacing, laves_error *error) {
   laves__samples *samples = m->samples;
-  flat_samples list = {.most = (size_t)SURFACE_SAMPLES_MAX, .reach = spacing, .origin = m->oracle->origin};
+  flat_samples list = {.most = (size_t)SURFACE_SAMPLES_MAX, .reach = spacing, .origin = m->oracle->origin, .tree = m->tree};
+  laves__boundary_tree_levels(m->tree, &list.least, &list.greatest);
   for (sample_flat_faces(&list, m->oracle); list.count > list.most; sample_flat_faces(&list, m->oracle)) list.reach *= 1.5;
   if (!laves__grow(context, &samples->items, &samples->capacity, samples->count + list.count, sizeof *samples->items))
     return laves__fail_memory(context, error);
@@ -285,21 +319,18 @@ static laves_result list_flat_samples(laves_context *context, const measuring *m
   return LAVES_OK;
 }
 
-/* Asks the domain for samples and appends them. */
-static laves_result list_own_samples(laves_context *context, const measuring *m, double spacing, size_t room,
-                                     laves_error *error) {
+/* Asks the domain for samples of its faces and appends them. */
+static laves_result list_face_samples(laves_context *context, const measuring *m, double spacing, size_t room,
+                                      laves_error *error) {
   const laves__oracle *oracle = m->oracle;
   laves__samples *samples = m->samples;
   laves__vec3 *points = laves__alloc(context, room, sizeof *points);
   if (!points) return laves__fail_memory(context, error);
-  const bool has_faces = m->is_surface && oracle->sample;
-  size_t count = has_faces ? oracle->sample(oracle->self, spacing, points, room) : 0;
-  for (double wider = spacing; !has_faces && count == 0 && wider < m->reach_max && !laves__is_cancelled(context); wider *= 2)
-    count = laves__sample_surface(context, oracle, wider, points, room);
+  size_t count = oracle->sample(oracle->self, spacing, points, room);
   if (count > room) count = room;
   laves_result result = LAVES_OK;
   if (laves__grow(context, &samples->items, &samples->capacity, samples->count + count, sizeof *samples->items)) {
-    for (size_t i = 0; i < count; i++) samples->items[samples->count++] = sample_at(v3_add(points[i], oracle->origin), 1);
+    for (size_t i = 0; i < count; i++) samples->items[samples->count++] = sample_at(v3_add(points[i], oracle->origin), 1, 0);
   } else {
     result = laves__fail_memory(context, error);
   }
@@ -307,15 +338,41 @@ static laves_result list_own_samples(laves_context *context, const measuring *m,
   return result;
 }
 
+/* The same for surfaces that have no faces. */
+static laves_result list_found_samples(laves_context *context, const measuring *m, double spacing, size_t room,
+                                       laves_error *error) {
+  const laves__oracle *oracle = m->oracle;
+  laves__samples *samples = m->samples;
+  laves__surface_sample *found = laves__alloc(context, room, sizeof *found);
+  if (!found) return laves__fail_memory(context, error);
+  size_t count = 0;
+  for (double wider = spacing; count == 0 && wider < m->reach_max && !laves__is_cancelled(context); wider *= 2)
+    count = laves__sample_surface(context, oracle, m->tree, wider, found, room);
+  laves_result result = LAVES_OK;
+  if (laves__grow(context, &samples->items, &samples->capacity, samples->count + count, sizeof *samples->items)) {
+    for (size_t i = 0; i < count; i++)
+      samples->items[samples->count++] = sample_at(v3_add(found[i].point, oracle->origin), found[i].weight, 0);
+  } else {
+    result = laves__fail_memory(context, error);
+  }
+  laves__free(context, found, room, sizeof *found);
+  return result;
+}
+
+/* Domains that sample their faces themselves do so evenly, as closely as makes as many samples. */
 static laves_result list_surface_samples(laves_context *context, measuring *m, laves_error *error) {
   const laves__oracle *oracle = m->oracle;
-  double spacing = SURFACE_SPACING * m->samples->spacing;
-  const double area = oracle->area > 0 ? oracle->area : 2 * boundary_area(m->samples);
+  double spacing = SURFACE_SPACING * m->samples->spacing, stretched;
+  const double boundary = boundary_area(m->samples, &stretched);
+  const double stretch = boundary > 0 && isfinite(stretched / boundary) ? stretched / boundary : 1;
+  const double area = stretch * (oracle->area > 0 ? oracle->area : 2 * boundary);
   if (!(spacing > 0) || !isfinite(area)) return LAVES_OK;
   if (area / (spacing * spacing) > SURFACE_SAMPLES_MAX) spacing = sqrt(area / SURFACE_SAMPLES_MAX);
   if (oracle->flat_face && (double)oracle->flat_face_count < SURFACE_SAMPLES_MAX / 2)
     return list_flat_samples(context, m, spacing, error);
-  return list_own_samples(context, m, spacing, (size_t)(4 * area / (spacing * spacing)) + 4096, error);
+  const size_t room = (size_t)(4 * area / (spacing * spacing)) + 4096;
+  if (m->is_surface && oracle->sample) return list_face_samples(context, m, spacing / sqrt(fmax(1, stretch)), room, error);
+  return list_found_samples(context, m, spacing, room, error);
 }
 
 /* ---- both ---- */
@@ -347,15 +404,18 @@ laves_result laves__measure_distances(laves_context *context, const laves_mesh *
   box = box3_add(box3_add(box, v3_add(bounds.lower, m.oracle->origin)), v3_add(bounds.upper, m.oracle->origin));
   m.reach_max = box3_diagonal(box);
 
-  laves_result result = list_boundary_samples(context, &m, error);
+  samples->vertex_count = mesh->vertex_count;
+  samples->edges = laves__local_edges(context, mesh, boundary);
+  laves_result result = samples->edges ? list_boundary_samples(context, &m, error) : laves__fail_memory(context, error);
   if (result != LAVES_OK) goto clean_up;
   if (!laves__parallel_for(context, "distance", chunks(samples->boundary_count), 1, project_chunks, &m)) {
     result = laves__fail_cancelled(error);
     goto clean_up;
   }
-  result = list_surface_samples(context, &m, error);
+  result =
+      laves__boundary_tree_build(context, mesh, boundary, m.oracle->origin, samples->edges, samples->spacing, &m.tree, error);
   if (result != LAVES_OK) goto clean_up;
-  result = laves__boundary_tree_build(context, mesh, boundary, m.oracle->origin, &m.tree, error);
+  result = list_surface_samples(context, &m, error);
   if (result != LAVES_OK) goto clean_up;
   if (!laves__parallel_for(context, "distance", chunks(samples->count - samples->boundary_count), 1, nearest_chunks, &m))
     result = laves__fail_cancelled(error);

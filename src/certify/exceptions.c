@@ -5,7 +5,8 @@
  *
  * The cause is read from the domain's surface near the place: thin, when walking a size inwards from the nearest point of the
  * surface comes out of the solid; a crease, when the surface's radius of curvature there is below half an edge; curved,
- * below two. */
+ * below two. Sizes are those of the edges near the place: the mean edge of the mesh times the power of two nearest to the
+ * mean edge of the boundary there. */
 #include <string.h>
 
 #include "base/predicates.h"
@@ -25,7 +26,8 @@ typedef struct listing {
   const laves_domain *domain; /* or NULL */
   const laves__survey *survey;
   laves_certificate *c;
-  double size; /* of the mesh's edges */
+  double size;    /* of the mesh's edges */
+  bool is_graded; /* somewhere the size is another */
 } listing;
 
 /* ---- names ---- */
@@ -54,16 +56,41 @@ const char *laves_exception_text(laves_exception_kind kind) {
 const char *laves_cause_key(laves_cause cause) { return name_of(cause_names, LAVES__COUNT_OF(cause_names), (int)cause, 0); }
 const char *laves_cause_text(laves_cause cause) { return name_of(cause_names, LAVES__COUNT_OF(cause_names), (int)cause, 1); }
 
+/* ---- local sizes ---- */
+
+static bool is_graded(const listing *l) {
+  const laves__samples *samples = &l->survey->samples;
+  for (size_t v = 0; samples->edges && v < samples->vertex_count; v++)
+    if (laves__edge_level((double)samples->edges[v], l->size) != 0) return true;
+  return false;
+}
+
+/* By the boundary's nearest vertex. */
+static double size_at(const listing *l, laves__vec3 place) {
+  const laves__boundary *boundary = &l->survey->boundary;
+  const float *edges = l->survey->samples.edges;
+  double nearest = INFINITY, edge = 0;
+  if (!l->is_graded) return l->size;
+  for (size_t i = 0; i < 3 * boundary->count; i++) {
+    const int32_t v = boundary->faces[i / 3][i % 3];
+    const double distance = v3_norm2(v3_sub(l->mesh->points[v], place));
+    if (!(distance < nearest)) continue;
+    nearest = distance;
+    edge = (double)edges[v];
+  }
+  return ldexp(l->size, laves__edge_level(edge, l->size));
+}
+
 /* ---- causes ---- */
 
 /* Whether the walk from the nearest point of the surface, against its normal, leaves the solid within a size. */
-static bool is_thin(const listing *l, laves__vec3 local) {
+static bool is_thin(const listing *l, laves__vec3 local, double size) {
   const laves__oracle *oracle = &l->domain->oracle;
   uint32_t hint = LAVES__NO_HINT;
   laves__vec3 foot, normal, steps[WALK_STEPS];
   double phi[WALK_STEPS];
-  if (!oracle->project(oracle->self, local, 2 * l->size, &hint, &foot, &normal)) return false;
-  for (int i = 0; i < WALK_STEPS; i++) steps[i] = v3_mad(foot, normal, -l->size * (i + 1) / WALK_STEPS);
+  if (!oracle->project(oracle->self, local, 2 * size, &hint, &foot, &normal)) return false;
+  for (int i = 0; i < WALK_STEPS; i++) steps[i] = v3_mad(foot, normal, -size * (i + 1) / WALK_STEPS);
   oracle->evaluate(oracle->self, WALK_STEPS, steps, phi, NULL);
   for (int i = 0; i < WALK_STEPS; i++)
     if (phi[i] > 0) return true;
@@ -72,9 +99,10 @@ static bool is_thin(const listing *l, laves__vec3 local) {
 
 static laves_cause cause_of(const listing *l, laves__vec3 place, double curvature_radius) {
   if (!l->domain || !v3_finite(place)) return LAVES_CAUSE_UNKNOWN;
-  if (is_thin(l, v3_sub(place, l->domain->oracle.origin))) return LAVES_CAUSE_THIN;
-  if (curvature_radius < CREASE_RADIUS * l->size) return LAVES_CAUSE_CREASE;
-  return curvature_radius < CURVED_RADIUS * l->size ? LAVES_CAUSE_CURVED : LAVES_CAUSE_UNKNOWN;
+  const double size = size_at(l, place);
+  if (is_thin(l, v3_sub(place, l->domain->oracle.origin), size)) return LAVES_CAUSE_THIN;
+  if (curvature_radius < CREASE_RADIUS * size) return LAVES_CAUSE_CREASE;
+  return curvature_radius < CURVED_RADIUS * size ? LAVES_CAUSE_CURVED : LAVES_CAUSE_UNKNOWN;
 }
 
 /* ---- the list ---- */
@@ -89,7 +117,7 @@ static void add(const listing *l, laves_exception_kind kind, laves__vec3 place, 
 }
 
 static double curvature_at(const listing *l, laves__vec3 place) {
-  return l->domain ? laves__curvature_radius(l->domain, place, l->size) : NAN;
+  return l->domain ? laves__curvature_radius(l->domain, place, size_at(l, place)) : NAN;
 }
 
 static laves__vec3 centroid_of(const laves_mesh *mesh, size_t tet) {
@@ -173,17 +201,23 @@ static laves_result judge_promise(const listing *l, laves_error *error) {
 
 static laves_result list_distant(const listing *l, laves_error *error) {
   laves_place places[LAVES_PLACE_CAPACITY];
+  double allowed[LAVES_PLACE_CAPACITY];
   size_t count;
   if (!(l->c->distance_asked > 0)) return LAVES_OK;
-  const laves_result result = laves__distant_places(l->context, &l->survey->samples, l->domain, l->c->distance_asked, places,
-                                                    LAVES_PLACE_CAPACITY, &count, error);
+  const laves_result result = laves__distant_places(l->context, &l->survey->samples, l->domain, l->c->distance_asked, l->size,
+                                                    places, allowed, LAVES_PLACE_CAPACITY, &count, error);
   if (result != LAVES_OK) return result;
   l->c->exception_counts[LAVES_EXCEPTION_DISTANT] = count;
   for (size_t i = 0; i < at_most_listed(count); i++) {
     const laves__vec3 place = v3(places[i].place[0], places[i].place[1], places[i].place[2]);
-    add(l, LAVES_EXCEPTION_DISTANT, place, places[i].value, l->c->distance_asked, -1, curvature_at(l, place));
+    add(l, LAVES_EXCEPTION_DISTANT, place, places[i].value, allowed[i], -1, curvature_at(l, place));
   }
   return LAVES_OK;
+}
+
+/* The distance of a sample in units in which the edges near by are as long as the mean. */
+static double even_distance(const listing *l, const laves__sample *s) {
+  return ldexp(s->distance, -laves__edge_level((double)s->edge, l->size));
 }
 
 /* Counts vertices off the surface and keeps the furthest, by insertion. */
@@ -195,41 +229,46 @@ static void list_off_surface(const listing *l) {
   if (!(limit > 0)) return;
   for (size_t i = 0; i < samples->boundary_count; i++) {
     const laves__sample *s = &samples->items[i];
-    if (s->vertex < 0 || !(s->distance > limit)) continue;
+    if (s->vertex < 0 || !(even_distance(l, s) > limit)) continue;
     count++;
     size_t at = kept;
-    while (at > 0 && worst[at - 1]->distance < s->distance) at--;
+    while (at > 0 && even_distance(l, worst[at - 1]) < even_distance(l, s)) at--;
     if (at == LAVES_PLACE_CAPACITY) continue;
     if (kept < LAVES_PLACE_CAPACITY) kept++;
     for (size_t j = kept - 1; j > at; j--) worst[j] = worst[j - 1];
     worst[at] = s;
   }
   l->c->exception_counts[LAVES_EXCEPTION_OFF_SURFACE] = count;
-  for (size_t i = 0; i < kept; i++)
-    add(l, LAVES_EXCEPTION_OFF_SURFACE, worst[i]->point, worst[i]->distance, limit, worst[i]->vertex,
-        curvature_at(l, worst[i]->point));
+  for (size_t i = 0; i < kept; i++) {
+    const laves__sample *s = worst[i];
+    add(l, LAVES_EXCEPTION_OFF_SURFACE, s->point, s->distance, ldexp(limit, laves__edge_level((double)s->edge, l->size)),
+        s->vertex, curvature_at(l, s->point));
+  }
 }
 
 static void list_thin(const listing *l) {
   laves_thin_place places[LAVES_PLACE_CAPACITY];
   if (!l->domain || !(l->c->distance_asked > 0)) return;
   const size_t found = laves_domain_thin_places(l->domain, places, LAVES_PLACE_CAPACITY);
-  for (size_t i = 0; i < found && i < LAVES_PLACE_CAPACITY && places[i].thickness < l->size; i++) {
+  for (size_t i = 0; i < found && i < LAVES_PLACE_CAPACITY; i++) {
     const laves__vec3 place = v3(places[i].place[0], places[i].place[1], places[i].place[2]);
-    add(l, LAVES_EXCEPTION_THIN, place, places[i].thickness, l->size, -1, curvature_at(l, place));
+    const double size = size_at(l, place);
+    if (!(places[i].thickness < size)) continue;
+    add(l, LAVES_EXCEPTION_THIN, place, places[i].thickness, size, -1, curvature_at(l, place));
     l->c->exception_counts[LAVES_EXCEPTION_THIN]++;
   }
 }
 
 laves_result laves__list_exceptions(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
                                     const laves__survey *survey, laves_certificate *certificate, laves_error *error) {
-  const listing l = {.context = context,
-                     .mesh = mesh,
-                     .domain = domain,
-                     .survey = survey,
-                     .c = certificate,
-                     .size = certificate->check.edge_mean};
+  listing l = {.context = context,
+               .mesh = mesh,
+               .domain = domain,
+               .survey = survey,
+               .c = certificate,
+               .size = certificate->check.edge_mean};
   const limits asked = {certificate->asked_min_dihedral, certificate->asked_max_dihedral, certificate->asked_volume_length};
+  l.is_graded = is_graded(&l);
   list_inverted(&l);
   list_nonmanifold(&l);
   laves_result result = judge_promise(&l, error);

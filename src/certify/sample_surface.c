@@ -1,14 +1,15 @@
 /* Samples of a surface that only tells signs and projections: an implicit solid, or a function of the caller's.
  *
  * The box of the domain is halved again and again, leaving out blocks that the domain knows to lie on one side, until blocks
- * are eight samples wide. In each block that remains phi is evaluated on a grid, which is far cheaper than asking about small
- * cells one by one. A cell whose corners have both signs projects its centre; the foot is a sample when it lies in the cell, so
- * there is about one sample for each cell that the surface crosses. A sheet between two grid points has no such cell: so
- * a cell far from any of them is tried too, when phi at a corner is small against its steps in the block.
+ * are eight samples wide, by the edges of the mesh near by. In each block that remains phi is evaluated on a grid, which is far
+ * cheaper than asking about small cells one by one. A cell whose corners have both signs projects its centre; the foot is a
+ * sample when it lies in the cell, so there is about one sample for each cell that the surface crosses. A sheet between two grid
+ * points has no such cell: so a cell far from any of them is tried too, when phi at a corner is small against its steps in the
+ * block.
  *
  * Blocks are done in parallel, a wave at a time, and their samples put together in order. A domain that knows nothing of whole
  * blocks may leave too many; then the search is given up and may be tried again with a wider spacing. */
-#include "certify/certify.h"
+#include "certify/boundary_tree.h"
 
 enum {
   CELLS = 8,
@@ -23,11 +24,19 @@ enum {
 /* Halves of a cell's diagonal that |phi| over its steepest step may be, for a sheet to be looked for. */
 #define SHEET_NEAR 0.87
 
+/* A cube that the surface may cross. */
+typedef struct cube {
+  laves__vec3 centre;
+  double half;
+  int depth; /* how many times the first has been halved */
+} cube;
+
 typedef struct search {
   laves_context *context;
   const laves__oracle *oracle;
-  double half;         /* of the blocks in hand */
-  laves__vec3 *blocks; /* [count] their centres */
+  const laves__boundary_tree *tree;
+  double spacing;
+  cube *blocks; /* [count] in hand */
   size_t count, capacity;
   size_t first;       /* block of the wave */
   laves__vec3 *found; /* [WAVE_BLOCKS][BLOCK_CELLS] */
@@ -140,8 +149,8 @@ static bool is_in_cell(laves__vec3 foot, laves__vec3 centre, double width) {
 }
 
 /* A place of the surface in each cell where one can be found: the foot of its centre, or a crossing where there is no foot. */
-static size_t sample_block(const search *s, laves__vec3 centre, laves__vec3 *found) {
-  block b = {.width = 2 * s->half / CELLS, .corner = v3_sub(centre, v3(s->half, s->half, s->half))};
+static size_t sample_block(const search *s, const cube *at, laves__vec3 *found) {
+  block b = {.width = 2 * at->half / CELLS, .corner = v3_sub(at->centre, v3(at->half, at->half, at->half))};
   uint16_t cells[BLOCK_CELLS];
   laves__vec3 centres[BLOCK_CELLS];
   laves__projection answers[BLOCK_CELLS];
@@ -169,7 +178,7 @@ static size_t sample_block(const search *s, laves__vec3 centre, laves__vec3 *fou
 static void sample_blocks(void *user, size_t begin, size_t end, int worker) {
   search *s = user;
   (void)worker;
-  for (size_t i = begin; i < end; i++) s->found_counts[i] = sample_block(s, s->blocks[s->first + i], s->found + i * BLOCK_CELLS);
+  for (size_t i = begin; i < end; i++) s->found_counts[i] = sample_block(s, &s->blocks[s->first + i], s->found + i * BLOCK_CELLS);
 }
 
 /* ---- all blocks ---- */
@@ -179,47 +188,67 @@ static bool may_hold_surface(const search *s, laves__vec3 centre, double half) {
   return s->oracle->side(s->oracle->self, centre, radius, v3(half, half, half)) == LAVES__UNDECIDED;
 }
 
-/* Halves all blocks in hand; false when memory is short, or there are too many. */
-static bool halve(search *s) {
-  laves__vec3 *parts = NULL;
+/* Whether a block has more cells than the edges near by ask for. */
+static bool is_wide(const search *s, const cube *at) {
+  const int level = laves__boundary_tree_level(s->tree, at->centre, sqrt(3) * at->half);
+  return 2 * at->half > CELLS * ldexp(s->spacing, level);
+}
+
+/* Halves the blocks in hand that are too wide; false when memory is short, or there are too many. */
+static bool halve(search *s, bool *done) {
+  cube *parts = NULL;
   size_t capacity = 0, count = 0;
-  if (8 * s->count > 8 * BLOCKS_MAX || !laves__grow(s->context, &parts, &capacity, 8 * s->count, sizeof *parts)) return false;
-  const double h = s->half / 2;
-  for (size_t i = 0; i < 8 * s->count; i++) {
-    const laves__vec3 c = v3_add(s->blocks[i / 8], v3(i & 1 ? h : -h, i & 2 ? h : -h, i & 4 ? h : -h));
-    if (may_hold_surface(s, c, h)) parts[count++] = c;
-    if (i % 4096 == 0 && laves__cancelled(s->context, "distance", 0)) break;
+  if (s->count > BLOCKS_MAX || !laves__grow(s->context, &parts, &capacity, 8 * s->count, sizeof *parts)) return false;
+  *done = true;
+  for (size_t i = 0; i < s->count; i++) {
+    const cube *at = &s->blocks[i];
+    if (i % 512 == 0 && laves__cancelled(s->context, "distance", 0)) break;
+    if (!is_wide(s, at)) {
+      parts[count++] = *at;
+      continue;
+    }
+    *done = false;
+    const double h = at->half / 2;
+    for (int k = 0; k < 8; k++) {
+      const laves__vec3 c = v3_add(at->centre, v3(k & 1 ? h : -h, k & 2 ? h : -h, k & 4 ? h : -h));
+      if (may_hold_surface(s, c, h)) parts[count++] = (cube){c, h, at->depth + 1};
+    }
   }
   laves__free(s->context, s->blocks, s->capacity, sizeof *s->blocks);
   s->blocks = parts;
   s->capacity = capacity;
   s->count = count;
-  s->half = h;
   return true;
 }
 
-static bool list_blocks(search *s, double spacing) {
+static bool list_blocks(search *s) {
   const laves__vec3 widths = v3_sub(s->oracle->bounds.upper, s->oracle->bounds.lower);
   if (!laves__grow(s->context, &s->blocks, &s->capacity, 1, sizeof *s->blocks)) return false;
-  s->blocks[0] = box3_centre(s->oracle->bounds);
-  s->half = fmax(widths.x, fmax(widths.y, widths.z)) / 2 * (1 + 1e-3);
+  s->blocks[0] = (cube){box3_centre(s->oracle->bounds), fmax(widths.x, fmax(widths.y, widths.z)) / 2 * (1 + 1e-3), 0};
   s->count = 1;
-  while (2 * s->half > CELLS * spacing && s->count > 0 && !laves__is_cancelled(s->context))
-    if (!halve(s)) return false;
+  for (bool done = false; !done && s->count > 0 && !laves__is_cancelled(s->context);)
+    if (!halve(s, &done)) return false;
   return s->count <= BLOCKS_MAX;
 }
 
-size_t laves__sample_surface(laves_context *context, const laves__oracle *oracle, double spacing, laves__vec3 *points,
-                             size_t capacity) {
-  search s = {.context = context, .oracle = oracle};
+/* Appends what a block has found; a sample stands for the area of a cell's side. */
+static size_t append(const search *s, size_t in_wave, laves__surface_sample *samples, size_t count, size_t capacity) {
+  const double weight = ldexp(1, -2 * s->blocks[s->first + in_wave].depth);
+  for (size_t k = 0; k < s->found_counts[in_wave] && count < capacity; k++)
+    samples[count++] = (laves__surface_sample){s->found[in_wave * BLOCK_CELLS + k], weight};
+  return count;
+}
+
+size_t laves__sample_surface(laves_context *context, const laves__oracle *oracle, const laves__boundary_tree *tree,
+                             double spacing, laves__surface_sample *samples, size_t capacity) {
+  search s = {.context = context, .oracle = oracle, .tree = tree, .spacing = spacing};
   size_t count = 0;
-  const bool listed = list_blocks(&s, spacing);
+  const bool listed = list_blocks(&s);
   s.found = listed ? laves__alloc(context, (size_t)WAVE_BLOCKS * BLOCK_CELLS, sizeof *s.found) : NULL;
   for (; s.found && s.first < s.count && count < capacity; s.first += WAVE_BLOCKS) {
     const size_t wave = s.count - s.first < WAVE_BLOCKS ? s.count - s.first : WAVE_BLOCKS;
     if (!laves__parallel_for(context, "distance", wave, 1, sample_blocks, &s)) break;
-    for (size_t i = 0; i < wave; i++)
-      for (size_t k = 0; k < s.found_counts[i] && count < capacity; k++) points[count++] = s.found[i * BLOCK_CELLS + k];
+    for (size_t i = 0; i < wave; i++) count = append(&s, i, samples, count, capacity);
   }
   if (s.found) laves__free(context, s.found, (size_t)WAVE_BLOCKS * BLOCK_CELLS, sizeof *s.found);
   laves__free(context, s.blocks, s.capacity, sizeof *s.blocks);

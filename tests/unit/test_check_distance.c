@@ -114,16 +114,17 @@ static void tree_finds_the_nearest(void **state) {
   laves_mesh *mesh = fixture_cubes(*state, 3, 3, 3, NULL, NULL);
   laves__boundary boundary;
   laves__boundary_tree *tree;
+  float edge = 0;
   const laves__vec3 origin = v3(1, 2, 3);
   assert_int_equal(laves__find_boundary(*state, mesh, &boundary, NULL), LAVES_OK);
   assert_int_equal(boundary.count, mesh->face_count);
   assert_memory_equal(boundary.faces, mesh->faces, boundary.count * sizeof *boundary.faces);
-  assert_int_equal(laves__boundary_tree_build(*state, mesh, &boundary, origin, &tree, NULL), LAVES_OK);
+  assert_int_equal(laves__boundary_tree_build(*state, mesh, &boundary, origin, NULL, 0, &tree, NULL), LAVES_OK);
   for (int i = 0; i < 15 * 15 * 15; i++) {
     const laves__vec3 p = v3(i % 15 * 0.47 - 1.7, i / 15 % 15 * 0.49 - 1.9, i / 225 * 0.51 - 2.1);
     const double distance = cube_distance(p);
-    assert_float_equal(laves__boundary_tree_distance(tree, v3_sub(p, origin), INFINITY), distance, 1e-12);
-    assert_float_equal(laves__boundary_tree_distance(tree, v3_sub(p, origin), distance), distance, 1e-12);
+    assert_float_equal(laves__boundary_tree_distance(tree, v3_sub(p, origin), INFINITY, &edge), distance, 1e-12);
+    assert_float_equal(laves__boundary_tree_distance(tree, v3_sub(p, origin), distance, &edge), distance, 1e-12);
   }
   laves__boundary_tree_free(tree);
   laves__boundary_free(&boundary);
@@ -134,8 +135,9 @@ static void tree_of_nothing(void **state) {
   laves_mesh *mesh = fixture_cubes(*state, 1, 1, 1, NULL, NULL);
   laves__boundary empty = {0};
   laves__boundary_tree *tree;
-  assert_int_equal(laves__boundary_tree_build(*state, mesh, &empty, v3(0, 0, 0), &tree, NULL), LAVES_OK);
-  assert_true(laves__boundary_tree_distance(tree, v3(0, 0, 0), INFINITY) == INFINITY);
+  float edge = 0;
+  assert_int_equal(laves__boundary_tree_build(*state, mesh, &empty, v3(0, 0, 0), NULL, 0, &tree, NULL), LAVES_OK);
+  assert_true(laves__boundary_tree_distance(tree, v3(0, 0, 0), INFINITY, &edge) == INFINITY);
   laves__boundary_tree_free(tree);
   laves_mesh_free(mesh);
 }
@@ -342,12 +344,157 @@ static void short_of_memory(void **state) {
 
 #define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
 
+/* ---- edges of several sizes ---- */
+
+/* The unit ball moved by a Moebius transformation: vertices stay on the sphere, and edges are nine times as long at its lower end
+ * in x as at its upper. */
+static laves_mesh *graded_ball(laves_context *context) {
+  const laves__vec3 a = v3(-0.5, 0, 0);
+  laves_mesh *mesh = fixture_ball(context, 10, 1);
+  for (size_t i = 0; i < mesh->vertex_count; i++) {
+    const laves__vec3 x = mesh->points[i];
+    const double x2 = v3_norm2(x), xa = v3_dot(x, a), a2 = v3_norm2(a);
+    mesh->points[i] = v3_scale(v3_mad(v3_scale(x, 1 - a2), a, -(1 - 2 * xa + x2)), 1 / (1 - 2 * xa + x2 * a2));
+  }
+  return mesh;
+}
+
+static laves_domain *ball_domain(laves_context *context, bool implicit) {
+  laves_domain *domain;
+  if (implicit) {
+    assert_int_equal(laves_domain_from_expression(context, "sphere(1)", &domain, NULL), LAVES_OK);
+    return domain;
+  }
+  laves_mesh *ball = fixture_ball(context, 10, 1);
+  assert_int_equal(laves_domain_from_triangles(context, &ball->points->x, ball->vertex_count,
+                                               (const uint32_t *)&ball->faces[0][0], ball->face_count, NULL, &domain, NULL),
+                   LAVES_OK);
+  laves_mesh_free(ball);
+  return domain;
+}
+
+static void levels_of_edges(void **state) {
+  (void)state;
+  assert_int_equal(laves__edge_level(1, 1), 0);
+  assert_int_equal(laves__edge_level(1.41, 1), 0);
+  assert_int_equal(laves__edge_level(1.42, 1), 1);
+  assert_int_equal(laves__edge_level(0.71, 1), 0);
+  assert_int_equal(laves__edge_level(0.70, 1), -1);
+  assert_int_equal(laves__edge_level(3, 24), -3);
+  assert_int_equal(laves__edge_level(0, 1), 0);
+  assert_int_equal(laves__edge_level(1, 0), 0);
+  assert_int_equal(laves__edge_level(1e300, 1e-300), 0);
+}
+
+/* A tree tells the least level near by: all of a ball of one size has none, a graded one has small edges at one end. */
+static void levels_of_a_tree(void **state) {
+  for (int graded = 0; graded < 2; graded++) {
+    laves_mesh *mesh = graded ? graded_ball(*state) : fixture_ball(*state, 10, 1);
+    laves__boundary boundary;
+    laves__boundary_tree *tree;
+    int least, greatest;
+    assert_int_equal(laves__find_boundary(*state, mesh, &boundary, NULL), LAVES_OK);
+    float *edges = laves__local_edges(*state, mesh, &boundary);
+    assert_non_null(edges);
+    assert_int_equal(laves__boundary_tree_build(*state, mesh, &boundary, v3(0, 0, 0), edges, graded ? 0.12 : 0.2, &tree, NULL),
+                     LAVES_OK);
+    laves__boundary_tree_levels(tree, &least, &greatest);
+    if (graded) {
+      assert_true(least <= -1 && greatest >= 1);
+      assert_int_equal(laves__boundary_tree_level(tree, v3(1, 0, 0), 0.05), least);
+      assert_true(laves__boundary_tree_level(tree, v3(-1, 0, 0), 0.05) > 0);
+      assert_int_equal(laves__boundary_tree_level(tree, v3(-1, 0, 0), 3), least);
+    }
+    assert_int_equal(laves__boundary_tree_level(tree, v3(0, 0, 0), 0.1), 0);
+    laves__boundary_tree_free(tree);
+    laves__free(*state, edges, mesh->vertex_count, sizeof *edges);
+    laves__boundary_free(&boundary);
+    laves_mesh_free(mesh);
+  }
+}
+
+/* Small edges have more samples of the surface, and all have the weight of their share of it. */
+static void samples_follow_the_edges(void **state) {
+  for (int implicit = 0; implicit < 2; implicit++) {
+    laves_mesh *mesh = graded_ball(*state);
+    laves_domain *domain = ball_domain(*state, implicit);
+    laves__boundary boundary;
+    laves__samples samples;
+    size_t count[2] = {0, 0}; /* on the half of the small edges, and the other */
+    double weight[2] = {0, 0};
+    assert_int_equal(laves__find_boundary(*state, mesh, &boundary, NULL), LAVES_OK);
+    assert_int_equal(laves__measure_distances(*state, mesh, &boundary, domain, &samples, NULL), LAVES_OK);
+    for (size_t i = samples.boundary_count; i < samples.count; i++) {
+      const laves__sample *s = &samples.items[i];
+      const int half = s->point.x < 0;
+      count[half]++;
+      weight[half] += s->weight;
+      if (fabs(s->point.x) > 0.9) assert_true(half ? s->edge > 0.2F : s->edge < 0.1F);
+    }
+    assert_true(count[1] > 100 && count[0] > 2 * count[1]);
+    assert_float_equal(weight[0] / weight[1], 1, 0.1);
+    assert_true(count[0] < 20 * mesh->face_count);
+    laves__samples_free(&samples);
+    laves__boundary_free(&boundary);
+    laves_domain_free(domain);
+    laves_mesh_free(mesh);
+  }
+}
+
+/* Places are far apart by the edges near by: what flat triangles make of a sphere where they are large is none, and a dent among
+ * the small ones is one, though it is shallower. */
+static void distances_by_the_edges(void **state) {
+  laves_mesh *mesh = graded_ball(*state);
+  laves_domain *domain = ball_domain(*state, true);
+  laves_certify_options options = laves_certify_options_default();
+  laves_certificate c;
+  options.domain = domain;
+  assert_int_equal(laves_certify(*state, mesh, &options, &c, NULL), LAVES_OK);
+  assert_int_equal(c.exception_counts[LAVES_EXCEPTION_DISTANT], 0);
+  assert_int_equal(c.exception_counts[LAVES_EXCEPTION_OFF_SURFACE], 0);
+  const double usual = c.check.to_surface_max;
+  size_t tip = 0;
+  for (size_t v = 0; v < mesh->vertex_count; v++)
+    if (mesh->points[v].x > mesh->points[tip].x) tip = v;
+  const double dent = 0.03;
+  assert_true(dent < usual && dent < c.distance_asked);
+  mesh->points[tip] = v3_scale(mesh->points[tip], 1 - dent);
+  assert_int_equal(laves_certify(*state, mesh, &options, &c, NULL), LAVES_OK);
+  assert_true(c.exception_counts[LAVES_EXCEPTION_DISTANT] >= 1);
+  assert_int_equal(c.exception_counts[LAVES_EXCEPTION_OFF_SURFACE], 1);
+  for (size_t i = 0; i < c.exception_count; i++) {
+    const laves_exception *e = &c.exceptions[i];
+    if (e->kind != LAVES_EXCEPTION_DISTANT && e->kind != LAVES_EXCEPTION_OFF_SURFACE) continue;
+    const double base = e->kind == LAVES_EXCEPTION_DISTANT ? c.distance_asked : c.off_surface_asked;
+    assert_true(e->value > e->limit && e->limit <= base / 2);
+    assert_true(e->place[0] > 0.8);
+  }
+  laves_difference differences[4];
+  size_t count;
+  assert_int_equal(laves_certificate_verify(*state, mesh, domain, NULL, &c, differences, 4, &count, NULL), LAVES_OK);
+  if (count) fail_msg("%s", differences[0].text);
+  laves_domain_free(domain);
+  laves_mesh_free(mesh);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      TEST(tree_finds_the_nearest), TEST(tree_of_nothing), TEST(inscribed_ball),
-      TEST(larger_sphere),          TEST(missing_part),    TEST(callback_domain),
-      TEST(places_beyond),          TEST(garbage_points),  cmocka_unit_test(curvature_of_a_ball),
-      TEST(window_of_kuhn),         TEST(worst_first),     cmocka_unit_test(short_of_memory),
+      TEST(tree_finds_the_nearest),
+      TEST(tree_of_nothing),
+      TEST(inscribed_ball),
+      TEST(larger_sphere),
+      TEST(missing_part),
+      TEST(callback_domain),
+      TEST(places_beyond),
+      TEST(garbage_points),
+      cmocka_unit_test(curvature_of_a_ball),
+      TEST(window_of_kuhn),
+      TEST(worst_first),
+      cmocka_unit_test(short_of_memory),
+      cmocka_unit_test_setup_teardown(levels_of_edges, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(levels_of_a_tree, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(samples_follow_the_edges, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(distances_by_the_edges, set_up, tear_down),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
