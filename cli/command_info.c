@@ -8,6 +8,7 @@
 #include "input.h"
 #include "output.h"
 #include "session.h"
+#include "sizing.h"
 #include "summary.h"
 #include "text.h"
 
@@ -18,6 +19,7 @@ static const double well_resolved = 2;
 
 typedef struct info_run {
   input in;
+  laves_sizing *sizing; /* NULL: none */
   estimate cost;
   bool has_cost;
   laves_thin_place thin[THIN_CAPACITY];
@@ -75,9 +77,12 @@ static void say_cost(const info_run *all) {
 
 static laves_result info_steps(session *run, info_run *all) {
   laves_result result = outputs_check_json(run, run->given->input);
+  if (result == LAVES_OK) result = sizing_open(run, &all->sizing);
   if (result == LAVES_OK) result = input_open(run, run->given->input, &all->in);
   if (result != LAVES_OK) return result;
   all->has_cost = estimate_make(run, &all->in, &all->cost);
+  if (all->has_cost) result = estimate_varying(run, &all->in, all->sizing, &all->cost);
+  if (result != LAVES_OK) return result;
   const double start = progress_now();
   all->thin_count = laves_domain_thin_places(all->in.domain, all->thin, THIN_CAPACITY);
   all->thin_seconds = progress_now() - start;
@@ -122,6 +127,7 @@ int command_info(const settings *given) {
   if (!session_open(&run, given)) return laves_result_exit_code(LAVES_ERROR_MEMORY);
   laves_result result = info_steps(&run, &all);
   session_write_json(&run, &result, info_json, &all);
+  laves_sizing_free(all.sizing);
   laves_domain_free(all.in.domain);
   return session_close(&run, result);
 }

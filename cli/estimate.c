@@ -12,6 +12,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "sizing.h"
+
 /* Tets and vertices per V/h^3: counts of one cell over its side in mean edges, cubed. */
 static const double tets_in_volume = 8.5815, vertices_in_volume = 1.5144;
 /* The same per A/h^2, fitted to spheres, a torus, bunny, dragon, fertility and a plate of 50 to 860 thousand tets: the
@@ -22,6 +24,8 @@ static const double default_tets = 50e3;
 /* Costs measured in the same runs. The peak is reached either when the boundary layer is improved or when the arrays of the
  * mesh are filled. */
 static const double bytes_at_start = 4e6, bytes_per_triangle = 300, bytes_per_tet = 55, bytes_per_area = 2500;
+/* Where sizes vary, on spheres of 50 to 500 thousand tets, most of them near the surface. */
+static const double bytes_per_varying_tet = 350, seconds_per_varying_tet = 8e-6;
 static const double seconds_per_tet = 1e-7, seconds_per_area = 6.5e-5;
 
 /* Samples are taken until there are enough or the time is up: a soup of triangles answers slowly. */
@@ -129,6 +133,25 @@ bool estimate_make(session *run, const input *in, estimate *result) {
                   fmax(bytes_per_tet * result->tets, bytes_per_area * tiles_on_area);
   result->cpu_seconds = seconds_per_tet * result->tets + seconds_per_area * tiles_on_area;
   return true;
+}
+
+laves_result estimate_varying(session *run, const input *in, const laves_sizing *sizing, estimate *result) {
+  if (!sizing_is_asked(run->given)) return LAVES_OK;
+  laves_options options = laves_options_default();
+  laves_expectation expected;
+  options.size = run->given->size;
+  options.relative_size = run->given->relative_size;
+  options.tet_target = run->given->tets;
+  options.vertex_target = run->given->vertices;
+  sizing_options(run->given, sizing, &options);
+  const laves_result outcome = laves_estimate(run->context, in->domain, &options, &expected, &run->error);
+  if (outcome != LAVES_OK) return session_settle(run, outcome);
+  result->size = expected.size;
+  result->tets = expected.tets;
+  result->vertices = expected.vertices;
+  result->bytes = bytes_at_start + bytes_per_triangle * (double)in->info.triangle_count + bytes_per_varying_tet * expected.tets;
+  result->cpu_seconds = seconds_per_varying_tet * expected.tets;
+  return session_settle(run, outcome);
 }
 
 void estimate_write_json(json *out, const estimate *result) {

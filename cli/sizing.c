@@ -197,6 +197,11 @@ void sizing_options(const settings *given, const laves_sizing *sizing, laves_opt
   options->interior_growth = given->interior_growth;
 }
 
+bool sizing_is_asked(const settings *given) {
+  return given->size_fields.count > 0 || given->refinements.count > 0 || given->curvature_elements > 0 ||
+         given->thickness_elements > 0 || given->feature_elements > 0 || given->max_distance > 0 || given->interior_growth > 0;
+}
+
 static void write_texts(json *out, const char *key, const option_texts *list) {
   if (list->count == 0) return;
   json_open_array(out, key);

@@ -11,6 +11,9 @@ laves_result sizing_open(session *run, laves_sizing **sizing);
 /* Copies the size options given into the library's. */
 void sizing_options(const settings *given, const laves_sizing *sizing, laves_options *options);
 
+/* Whether anything of it was given that makes sizes vary. */
+bool sizing_is_asked(const settings *given);
+
 /* Writes the member "sizing": what was asked for. */
 void sizing_write_json(json *out, const settings *given);
 

@@ -341,6 +341,21 @@ typedef struct laves_report {
 LAVES_API laves_result laves_generate(laves_context *context, const laves_domain *domain, const laves_options *options,
                                       laves_mesh **mesh, laves_report *report, laves_error *error);
 
+/// What a mesh is likely to hold, before it is made.
+typedef struct laves_expectation {
+  double size;      ///< as laves_report.size
+  double tets;      ///< within some per cent where sizes are well below the solid's own
+  double vertices;  ///< the same; up to a quarter too few where most of the mesh is near the surface
+} laves_expectation;
+
+/// Estimates the counts of a mesh, with all that makes sizes vary.
+/// @param options      as for laves_generate(); with tet_target or vertex_target, all sizes are scaled until they are met
+/// @param expectation  out
+/// @return LAVES_OK, LAVES_ERROR_OPTION, LAVES_ERROR_INPUT, LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED
+/// Cost: that of finding the sizes; a small part of making the mesh.
+LAVES_API laves_result laves_estimate(laves_context *context, const laves_domain *domain, const laves_options *options,
+                                      laves_expectation *expectation, laves_error *error);
+
 /// The plain tiling of a box: all tiles whose cell lies within `cells` periods along each axis, cell side 2.5118 * size.
 LAVES_API laves_result laves_generate_tiling(laves_context *context, const int cells[3], double size, laves_mesh **mesh,
                                              laves_error *error);

@@ -7,7 +7,7 @@
  *   sources: expressions, scripts, backgrounds, points, curves, tags
  *   size = clamp(min(ceiling, sources), floor, ceiling)
  *
- * An expression that is one number lowers the ceiling, and a field of nothing else stays constant. Expressions are asked at the
+ * An expression that is one number lowers the base. Expressions are asked at the
  * nearest place of the domain's box, as the background reaches beyond it. Where an expression yields no size (zero, less, or
  * not finite) outside the solid, it asks for nothing; inside, it is at fault, which is looked for at the start at a grid of
  * places, and noted ever after. */
@@ -113,8 +113,8 @@ laves_result laves__size_status(const laves__size *size, laves_error *error) {
 }
 
 bool laves__size_is_constant(const laves__size *s) {
-  return s->growth == 0 && s->field_count == 0 && s->place_count == 0 && s->background_count == 0 && s->curvature_elements == 0 &&
-         s->thickness_elements == 0 && s->feature_elements == 0 && s->max_distance == 0;
+  return s->base == s->base_size && s->growth == 0 && s->field_count == 0 && s->place_count == 0 && s->background_count == 0 &&
+         s->curvature_elements == 0 && s->thickness_elements == 0 && s->feature_elements == 0 && s->max_distance == 0;
 }
 
 double laves__size_grading(const laves__size *size) { return size->grading; }
@@ -234,7 +234,7 @@ laves_result laves__size_create(laves_context *context, const laves_domain *doma
   s->context = context;
   s->domain = domain;
   s->oracle = &domain->oracle;
-  s->base = base_size;
+  s->base = s->base_size = base_size;
   s->curvature_elements = options->curvature_elements;
   s->thickness_elements = options->thickness_elements;
   s->feature_elements = options->feature_elements;

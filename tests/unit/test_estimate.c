@@ -1,0 +1,105 @@
+/* Expected counts against those of the meshes that are made. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "laves/laves.h"
+
+typedef struct made {
+  laves_context *context;
+  laves_domain *domain;
+  laves_sizing *sizing;
+  laves_options options;
+} made;
+
+static made of_expression(const char *text) {
+  made m = {.context = laves_context_create(NULL), .options = laves_options_default()};
+  assert_int_equal(laves_domain_from_expression(m.context, text, &m.domain, NULL), LAVES_OK);
+  assert_int_equal(laves_sizing_create(m.context, &m.sizing, NULL), LAVES_OK);
+  m.options.sizing = m.sizing;
+  m.options.improve = false;
+  return m;
+}
+
+static void drop(made *m) {
+  laves_sizing_free(m->sizing);
+  laves_domain_free(m->domain);
+  assert_int_equal(laves_context_bytes(m->context), 0);
+  laves_context_free(m->context);
+}
+
+/* The expectation is within `slack` of the mesh, as a share. */
+static void expect_near(made *m, double slack) {
+  laves_expectation expected;
+  laves_error error;
+  laves_mesh *mesh;
+  if (laves_estimate(m->context, m->domain, &m->options, &expected, &error) != LAVES_OK) fail_msg("%s", error.text);
+  assert_int_equal(laves_generate(m->context, m->domain, &m->options, &mesh, NULL, &error), LAVES_OK);
+  const double share = expected.tets / (double)laves_mesh_tet_count(mesh);
+  if (!(fabs(share - 1) <= slack)) fail_msg("%g of the tets that are made were expected", share);
+  laves_mesh_free(mesh);
+}
+
+static void uniform(void **state) {
+  (void)state;
+  made m = of_expression("torus(1, 0.4)");
+  m.options.size = 0.08;
+  expect_near(&m, 0.05);
+  drop(&m);
+}
+
+static void growing_inside(void **state) {
+  (void)state;
+  made m = of_expression("sphere(1)");
+  m.options.size = 0.06;
+  m.options.interior_growth = 0.3;
+  expect_near(&m, 0.1);
+  drop(&m);
+}
+
+static void by_expression(void **state) {
+  (void)state;
+  made m = of_expression("sphere(1)");
+  m.options.size = 0.2;
+  assert_int_equal(laves_sizing_add_expression(m.sizing, "0.07 + 0.2*abs(x)", NULL), LAVES_OK);
+  expect_near(&m, 0.1);
+  drop(&m);
+}
+
+static void targets_are_met(void **state) {
+  (void)state;
+  made m = of_expression("sphere(1)");
+  m.options.tet_target = 30000;
+  m.options.interior_growth = 0.3;
+  laves_expectation expected;
+  assert_int_equal(laves_estimate(m.context, m.domain, &m.options, &expected, NULL), LAVES_OK);
+  assert_true(fabs(expected.tets / 30000 - 1) < 0.03);
+  drop(&m);
+}
+
+static void mistakes_are_told(void **state) {
+  (void)state;
+  made m = of_expression("sphere(1)");
+  laves_expectation expected;
+  laves_error error;
+  m.options.grading = 7;
+  assert_int_equal(laves_estimate(m.context, m.domain, &m.options, &expected, &error), LAVES_ERROR_OPTION);
+  assert_non_null(strstr(error.text, "grading is 7"));
+  m.options.grading = 0.3;
+  assert_int_equal(laves_sizing_add_tag(m.sizing, "lid", 0.1, 0, NULL), LAVES_OK);
+  assert_int_equal(laves_estimate(m.context, m.domain, &m.options, &expected, &error), LAVES_ERROR_INPUT);
+  drop(&m);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(uniform),         cmocka_unit_test(growing_inside),    cmocka_unit_test(by_expression),
+      cmocka_unit_test(targets_are_met), cmocka_unit_test(mistakes_are_told),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
