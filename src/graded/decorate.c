@@ -1,8 +1,8 @@
 /* Which sites go.
  *
- * Candidates have colour 2 or 3 and only leaves of one side around, with one more layer of such leaves beyond. Of those, a
- * site whose partners mostly stay would leave a hole: sites with fewer than `bonds_min` partners that go stay, until no
- * more do. What is left is independent of the order. */
+ * Candidates have colour 2 or 3 and nothing but whole tiles of BCC around. Of those, sites with fewer than BONDS_MIN partners
+ * that go stay as well, for they would make more walls than tiles, and so on until no more do; what is left does not depend on
+ * the order. */
 #include "graded/tiles.h"
 
 #include <string.h>
@@ -51,20 +51,30 @@ size_t laves__bond_end(const laves__sites *sites, const laves__site_view *view, 
   return sites->corner.count + (size_t)sites->tree->node[leaf].order;
 }
 
-/* Candidates: centres of leaves with a plateau around, corners of eight such leaves. */
+/* Candidates: sites whose tets are all whole tiles of BCC. At a centre that needs an even leaf; at a corner, eight leaves of
+ * a side, for then no smaller one touches the edges from it. */
 static laves_result mark_candidates(laves__sites *sites, laves_error *error) {
   const laves__octree *tree = sites->tree;
-  uint8_t *leaves = laves__alloc_zeroed(tree->context, sites->corner.count, 1);
-  if (!leaves) return laves__fail_memory(tree->context, error);
-  for (size_t i = 0; i < tree->leaf_count; i++) {
+  laves_context *context = tree->context;
+  const size_t corners = sites->corner.count;
+  uint8_t *leaves = laves__alloc_zeroed(context, corners, 1);
+  int32_t *side = laves__alloc(context, corners, sizeof *side);
+  laves_result result = LAVES_OK;
+  if (!leaves || !side) result = laves__fail_memory(context, error);
+  for (size_t i = 0; result == LAVES_OK && i < tree->leaf_count; i++) {
     const laves__node *n = &tree->node[tree->leaf[i]];
-    if (!n->plateau) continue;
-    for (int k = 0; k < 8; k++) leaves[laves__key_find(&sites->corner, corner_key(n, k))]++;
-    sites->gone[sites->corner.count + i] = laves__site_look(sites, sites->corner.count + i).colour >= 2;
+    for (int k = 0; k < 8; k++) {
+      const int32_t corner = laves__key_find(&sites->corner, corner_key(n, k));
+      if (leaves[corner] == 0) side[corner] = n->side;
+      if (side[corner] == n->side) leaves[corner]++;
+    }
+    sites->gone[corners + i] = n->even && laves__site_look(sites, corners + i).colour >= 2;
   }
-  for (size_t i = 0; i < sites->corner.count; i++) sites->gone[i] = leaves[i] == 8 && laves__site_look(sites, i).colour >= 2;
-  laves__free(tree->context, leaves, sites->corner.count, 1);
-  return LAVES_OK;
+  for (size_t i = 0; result == LAVES_OK && i < corners; i++)
+    sites->gone[i] = leaves[i] == 8 && laves__site_look(sites, i).colour >= 2;
+  laves__free(context, side, corners, sizeof *side);
+  laves__free(context, leaves, corners, 1);
+  return result;
 }
 
 static bool is_lonely(const laves__sites *sites, size_t site) {

@@ -81,7 +81,7 @@ laves_result laves__graded_estimate(const laves__frame *frame, const laves__dema
     result = laves__fail_cancelled(error);
   } else {
     for (size_t i = 0; i < tree.leaf_count; i++) {
-      const bool plateau = tree.node[tree.leaf[i]].plateau;
+      const bool plateau = tree.node[tree.leaf[i]].even;
       *tets += e.share[i] * (plateau ? c15_tets : bcc_tets);
       *vertices += e.share[i] * (plateau ? c15_vertices : bcc_vertices);
     }

@@ -1,6 +1,6 @@
 /* From wishes to leaves, in four steps: halve cubes by the field, level by level; halve them by the samples; carry each
  * size outwards to where it may have grown enough (in the order of the sizes, as Dijkstra does), and halve what is then too
- * large or more than twice as large as a neighbour; measure the plateaus.
+ * large or more than twice as large as a neighbour; see which leaves are among their like.
  *
  * A cube is halved while its side is more than `roundness` times the wished size. A plateau of C15 has a mean edge of 0.80
  * sides, so edges lie between 0.72 and 1.43 of what is wished, and a uniform wish is met exactly. */
@@ -312,7 +312,7 @@ static laves_result limit(const laves__frame *frame, const laves__demand *demand
   return memory ? result : laves__fail_memory(tree->context, error);
 }
 
-/* ---- leaves and plateaus ---- */
+/* ---- leaves ---- */
 
 /* Lists leaves in the order of a depth-first walk: along the Morton curve. With `list` NULL they are only counted. */
 static size_t walk(const laves__octree *tree, int32_t index, int32_t *list, size_t count) {
@@ -326,21 +326,27 @@ static size_t walk(const laves__octree *tree, int32_t index, int32_t *list, size
   return count + 1;
 }
 
-/* Whether all leaves that touch a leaf are as large as it, or outside, where they have no corners. */
-static bool is_surrounded(const laves__octree *tree, int32_t leaf, int8_t (*probe)[3]) {
+/* See laves__node.even; leaves that are outside have no corners, but there must be one on each face. */
+static bool is_even(const laves__octree *tree, int32_t leaf, int8_t (*probe)[3]) {
+  const int32_t side = tree->node[leaf].side;
   for (int k = 0; k < PROBES; k++) {
+    int beyond = 0;
+    for (int axis = 0; axis < 3; axis++) beyond += probe[k][axis] < 0 || probe[k][axis] > 4;
+    if (beyond == 3) continue;
     const int32_t around = probe_leaf(tree, leaf, probe[k]);
-    if (around >= 0 && !tree->node[around].outside && tree->node[around].side != tree->node[leaf].side) return false;
+    const bool there = around >= 0 && !tree->node[around].outside;
+    if (beyond == 1 && !(there && tree->node[around].side == side)) return false;
+    if (there && tree->node[around].side < side) return false;
   }
   return true;
 }
 
-static void find_plateaus(void *user, size_t begin, size_t end, int worker) {
+static void find_even(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   laves__octree *tree = user;
   int8_t probe[PROBES][3];
   list_probes(probe);
-  for (size_t i = begin; i < end; i++) tree->node[tree->leaf[i]].plateau = is_surrounded(tree, tree->leaf[i], probe);
+  for (size_t i = begin; i < end; i++) tree->node[tree->leaf[i]].even = is_even(tree, tree->leaf[i], probe);
 }
 
 laves_result laves__octree_build(const laves__frame *frame, const laves__demand *demand, laves_context *context,
@@ -357,7 +363,7 @@ laves_result laves__octree_build(const laves__frame *frame, const laves__demand 
   if (!tree->leaf) return laves__fail_memory(context, error);
   walk(tree, 0, tree->leaf, 0);
   for (size_t i = 0; i < tree->leaf_count; i++) tree->node[tree->leaf[i]].order = (int32_t)i;
-  if (!laves__parallel_for(context, "background", tree->leaf_count, 64, find_plateaus, tree)) return laves__fail_cancelled(error);
+  if (!laves__parallel_for(context, "background", tree->leaf_count, 64, find_even, tree)) return laves__fail_cancelled(error);
   return LAVES_OK;
 }
 

@@ -30,7 +30,7 @@ typedef struct laves__node {
   int32_t order; /* of leaves that are not outside: place in the list */
   float size;    /* wished at the centre, never steeper than the grading */
   bool outside;
-  bool plateau; /* of leaves: all leaves that touch it are as large */
+  bool even; /* of leaves: those on its faces are as large, those at its edges not smaller */
 } laves__node;
 
 typedef struct laves__octree {

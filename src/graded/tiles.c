@@ -74,7 +74,7 @@ static int32_t middle_vertex(const filling *f, const laves__node *n, int a, int 
 static void add_equal_face(const filling *f, size_t leaf, size_t other, int way, leaf_tets *list) {
   const laves__node *n = &f->tree->node[f->tree->leaf[leaf]];
   const int32_t c = f->centre[leaf], d = f->centre[other];
-  const bool whole = n->plateau; /* no smaller leaf touches it */
+  const bool whole = n->even; /* no smaller leaf touches an edge */
   for (int k = 0; k < 4; k++) {
     const int a = face_corner[way][k], b = face_corner[way][(k + 1) & 3];
     const int32_t p = f->corner[leaf][a], q = f->corner[leaf][b];
@@ -182,7 +182,6 @@ static void collect(const filling *f, size_t leaf, leaf_tets *list) {
   const laves__node *n = &f->tree->node[f->tree->leaf[leaf]];
   list->count = 0;
   add_faces(f, leaf, list);
-  if (!n->plateau) return;
   const size_t centre = f->sites->corner.count + leaf;
   if (f->sites->gone[centre]) add_site(f, centre, list);
   const int32_t corner = laves__key_find(&f->sites->corner, laves__key_of(n->at[0], n->at[1], n->at[2]));

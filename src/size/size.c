@@ -3,7 +3,7 @@
  * In: options, with the sources of laves_options.sizing, and a domain.  Out: sizes anywhere; what asks at the surface only is in
  * size_samples.c.
  *
- *   ceiling: size, or with interior growth, size + growth * depth, up to max_size
+ *   ceiling: size, or with interior growth, size + growth * (depth below the rind), up to max_size
  *   sources: expressions, scripts, backgrounds, points, curves, tags
  *   size = clamp(min(ceiling, sources), floor, ceiling)
  *
@@ -18,6 +18,9 @@
 
 /* Where none is asked for: the finest is this part of the size, and growth ends at this many sizes. */
 static const double standard_floor = 1.0 / 64, standard_growth_end = 16;
+/* Growth begins this many sizes below the surface, so that the boundary layer is made of tiles of one size: without it the
+ * distance to the surface is a fifth larger and angles are some degrees worse, for a quarter less elements. */
+static const double rind_sizes = 0.75;
 /* Points along each axis at which sources are tried at the start. */
 enum { TRIAL_GRID = 12, TRIAL_SAMPLES = 2048 };
 /* A place is inside when phi is below this part of the diagonal: the surface's own points are. */
@@ -82,7 +85,9 @@ static void apply_background(const laves__size *s, const laves__background_sizes
 
 static void start_at_ceiling(const laves__size *s, size_t count, const laves__vec3 *points, double *sizes) {
   if (s->growth > 0) laves__depth_evaluate(&s->depth, count, points, sizes);
-  for (size_t i = 0; i < count; i++) sizes[i] = s->growth > 0 ? fmin(s->ceiling, s->base + s->growth * sizes[i]) : s->ceiling;
+  const double rind = rind_sizes * s->base;
+  for (size_t i = 0; i < count; i++)
+    sizes[i] = s->growth > 0 ? fmin(s->ceiling, s->base + s->growth * fmax(0, sizes[i] - rind)) : s->ceiling;
 }
 
 static void evaluate_batch(const laves__size *s, size_t count, const laves__vec3 *points, double *sizes) {
