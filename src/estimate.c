@@ -61,6 +61,7 @@ laves_result laves_estimate(laves_context *context, const laves_domain *domain, 
   if (result == LAVES_OK) result = find_frame(&e, domain, error);
   if (result == LAVES_OK) result = laves__size_create(context, domain, options, e.frame.size, &e.sizes, error);
   if (result == LAVES_OK && laves__size_is_constant(e.sizes)) {
+    e.frame.size = laves__size_ceiling(e.sizes);
     count_uniform(&e, e.frame.size, expectation);
   } else if (result == LAVES_OK) {
     result = laves__wishes_make(context, e.sizes, e.frame.size, &e.wishes, error);

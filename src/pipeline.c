@@ -92,6 +92,7 @@ static laves_result choose_sizes(run *r) {
   begin_stage(r);
   laves_result result = laves__size_create(r->context, r->domain, r->options, base, &r->sizes, r->error);
   if (result == LAVES_OK && laves__size_is_constant(r->sizes)) {
+    r->frame.size = laves__size_ceiling(r->sizes);
     laves__size_free(r->sizes);
     r->sizes = NULL;
   } else if (result == LAVES_OK) {

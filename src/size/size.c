@@ -118,8 +118,8 @@ laves_result laves__size_status(const laves__size *size, laves_error *error) {
 }
 
 bool laves__size_is_constant(const laves__size *s) {
-  return s->base == s->base_size && s->growth == 0 && s->field_count == 0 && s->place_count == 0 && s->background_count == 0 &&
-         s->curvature_elements == 0 && s->thickness_elements == 0 && s->feature_elements == 0 && s->max_distance == 0;
+  return s->growth == 0 && s->field_count == 0 && s->place_count == 0 && s->background_count == 0 && s->curvature_elements == 0 &&
+         s->thickness_elements == 0 && s->feature_elements == 0 && s->max_distance == 0;
 }
 
 double laves__size_grading(const laves__size *size) { return size->grading; }
@@ -239,7 +239,7 @@ laves_result laves__size_create(laves_context *context, const laves_domain *doma
   s->context = context;
   s->domain = domain;
   s->oracle = &domain->oracle;
-  s->base = s->base_size = base_size;
+  s->base = base_size;
   s->curvature_elements = options->curvature_elements;
   s->thickness_elements = options->thickness_elements;
   s->feature_elements = options->feature_elements;

@@ -22,8 +22,7 @@ laves_result laves__size_create(laves_context *context, const laves_domain *doma
                                 double base_size, laves__size **size, laves_error *error);
 void laves__size_free(laves__size *size);
 
-/* True when the size is base_size everywhere: then the uniform tiling serves. A field that is one lesser number is not: its
- * size is laves__size_ceiling(). */
+/* True when the size is laves__size_ceiling() everywhere, which may be less than base_size: then the uniform tiling serves. */
 bool laves__size_is_constant(const laves__size *size);
 
 /* sizes[i] at points[i]: the least of the sources that can be asked anywhere, from floor to ceiling; never NaN. Its slope is

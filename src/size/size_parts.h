@@ -105,7 +105,6 @@ struct laves__size {
   laves_context *context;
   const laves_domain *domain;
   const laves__oracle *oracle;
-  double base_size;            /* as given */
   double base, floor, ceiling; /* of any size; base: at the surface, where ceiling may be more */
   double grading, growth;
   double curvature_elements, thickness_elements, feature_elements, max_distance;
