@@ -129,7 +129,8 @@ const option option_rows[] = {
      "a x + b y + c z > d"},
     {"color", 0, VIEW, IN_PICTURE, OPTION_WORD, "BY", NULL, false, 0, 0, "class", MEMBER(color), 0,
      "class: surface and inside; dihedral or quality: from blue (as the tiling's) through amber to red (flat), by the dihedral "
-     "angle furthest from the tiling's or by the volume-length ratio"},
+     "angle furthest from the tiling's or by the volume-length ratio; size: from purple (the shortest edges of the mesh) through "
+     "green to yellow (the longest)"},
     {"view", 0, VIEW, IN_PICTURE, OPTION_WORD, "AZ,EL", "degrees", false, 0, 0, "30,25", MEMBER(view), 0,
      "where the viewer stands: around the upward axis, and above the horizon"},
     {"up", 0, VIEW, IN_PICTURE, OPTION_WORD, "AXIS", NULL, false, 0, 0, "z", MEMBER(up), 0, "upward axis: x, y or z"},

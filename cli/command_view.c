@@ -23,14 +23,14 @@ static int word_index(const char *word, const char *const *words, int count) {
 
 static laves_result read_words(session *run, scene_options *what, picture_options *how) {
   static const char *const axes[] = {"x", "y", "z"};
-  static const char *const colours[] = {"class", "dihedral", "quality"};
+  static const char *const colours[] = {"class", "dihedral", "quality", "size"};
   static const char *const backgrounds[] = {"white", "transparent", "dark"};
   const settings *given = run->given;
-  const int up = word_index(given->up, axes, 3), colour = word_index(given->color, colours, 3);
+  const int up = word_index(given->up, axes, 3), colour = word_index(given->color, colours, 4);
   const int background = word_index(given->background, backgrounds, 3);
   if (up < 0) return session_fail(run, LAVES_ERROR_OPTION, "option '--up' must be x, y or z, not '%.30s'", given->up);
   if (colour < 0) {
-    return session_fail(run, LAVES_ERROR_OPTION, "option '--color' must be class, dihedral or quality, not '%.30s'",
+    return session_fail(run, LAVES_ERROR_OPTION, "option '--color' must be class, dihedral, quality or size, not '%.30s'",
                         given->color);
   }
   if (background < 0) {
@@ -118,8 +118,12 @@ static laves_result draw(session *run, const laves_mesh *mesh, const scene_optio
   }
   if (result == LAVES_OK && session_speaks(run)) {
     text_buffer faces, tets;
-    text_say("%s: %s of %s, %d x %d pixels", path, text_plural(&faces, shown.face_count, "face"),
-             text_plural(&tets, shown.kept_tets, "tet"), how->width, how->height);
+    char scale[80] = "";
+    if (what->colour == SCENE_SIZE) {
+      snprintf(scale, sizeof scale, ", edges %.3g (purple) .. %.3g (yellow)", shown.sizes[0], shown.sizes[1]);
+    }
+    text_say("%s: %s of %s, %d x %d pixels%s", path, text_plural(&faces, shown.face_count, "face"),
+             text_plural(&tets, shown.kept_tets, "tet"), how->width, how->height, scale);
   }
   scene_free(&shown);
   return result;

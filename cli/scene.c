@@ -183,20 +183,46 @@ static double dihedral_score(double p[4][3]) {
   return fmax(0, fmin(1, fmin(smallest / 60, (180 - largest) / 105)));
 }
 
-/* sqrt(2) 6V / rms(edge)^3: 1 for the regular tetrahedron. */
-static double volume_length(double p[4][3]) {
-  double squares = 0, edge[3], u[3], v[3], w[3], n[3];
+/* sqrt of the mean squared edge. */
+static double edge_length(double p[4][3]) {
+  double squares = 0, edge[3];
   for (int a = 0; a < 4; a++) {
     for (int b = a + 1; b < 4; b++) {
       subtract(p[b], p[a], edge);
       squares += dot(edge, edge) / 6;
     }
   }
+  return sqrt(squares);
+}
+
+/* sqrt(2) 6V / rms(edge)^3: 1 for the regular tetrahedron. */
+static double volume_length(double p[4][3]) {
+  double u[3], v[3], w[3], n[3];
   subtract(p[1], p[0], u);
   subtract(p[2], p[0], v);
   subtract(p[3], p[0], w);
   cross(u, v, n);
-  return fmax(0, sqrt(2) * dot(n, w) / pow(squares, 1.5));
+  return fmax(0, sqrt(2) * dot(n, w) / pow(edge_length(p), 3));
+}
+
+static void tet_corners(const laves_mesh *mesh, int64_t tet, double p[4][3]) {
+  for (int k = 0; k < 4; k++) {
+    memcpy(p[k], laves_mesh_points(mesh) + 3 * laves_mesh_tets(mesh)[4 * tet + k], sizeof p[k]);
+  }
+}
+
+/* The range that colours span. Where sizes hardly vary it is wider than theirs, lest a uniform mesh look graded. */
+static void size_range(const laves_mesh *mesh, double range[2]) {
+  static const double least_span = 4;
+  double low = INFINITY, high = 0, p[4][3];
+  for (size_t i = 0; i < laves_mesh_tet_count(mesh); i++) {
+    tet_corners(mesh, (int64_t)i, p);
+    low = fmin(low, edge_length(p));
+    high = fmax(high, edge_length(p));
+  }
+  double widen = sqrt(fmax(1, least_span * low / high));
+  range[0] = low / widen;
+  range[1] = high * widen;
 }
 
 /* sRGB to linear light. */
@@ -207,23 +233,37 @@ static void linear_colour(uint32_t rgb, float out[3]) {
   }
 }
 
-/* Red for 0 through amber to blue for 1. */
-static void score_colour(double score, float out[3]) {
-  static const struct {
-    double score;
-    uint32_t rgb;
-  } stops[] = {{0, 0x8c1c3a}, {0.3, 0xd9482f}, {0.5, 0xf2a541}, {0.7, 0xf4e3a1}, {0.85, 0x8cc5b4}, {1, 0x3d7ea6}};
+/* A colour of a scale at `value`. */
+typedef struct colour_stop {
+  double value;
+  uint32_t rgb;
+} colour_stop;
+
+static void scale_colour(const colour_stop *stops, int count, double value, float out[3]) {
   int k = 0;
-  while (k < 4 && score > stops[k + 1].score) {
+  while (k < count - 2 && value > stops[k + 1].value) {
     k++;
   }
-  double t = fmax(0, fmin(1, (score - stops[k].score) / (stops[k + 1].score - stops[k].score)));
+  double t = fmax(0, fmin(1, (value - stops[k].value) / (stops[k + 1].value - stops[k].value)));
   float low[3], high[3];
   linear_colour(stops[k].rgb, low);
   linear_colour(stops[k + 1].rgb, high);
   for (int i = 0; i < 3; i++) {
     out[i] = (float)(low[i] + t * (high[i] - low[i]));
   }
+}
+
+/* Red for 0 through amber to blue for 1. */
+static void score_colour(double score, float out[3]) {
+  static const colour_stop stops[] = {{0, 0x8c1c3a},   {0.3, 0xd9482f},  {0.5, 0xf2a541},
+                                      {0.7, 0xf4e3a1}, {0.85, 0x8cc5b4}, {1, 0x3d7ea6}};
+  scale_colour(stops, sizeof stops / sizeof *stops, score, out);
+}
+
+/* Purple for the shortest edges through green to yellow for the longest, by their logarithm. */
+static void size_colour(double length, const double range[2], float out[3]) {
+  static const colour_stop stops[] = {{0, 0x6a3d9a}, {0.25, 0x4a78b8}, {0.5, 0x46ab9c}, {0.75, 0xa3cf62}, {1, 0xfbe78a}};
+  scale_colour(stops, sizeof stops / sizeof *stops, log(length / range[0]) / log(range[1] / range[0]), out);
 }
 
 /* Colours of the surface and of the inside; the inside of further regions takes the further ones. */
@@ -234,15 +274,13 @@ static void class_colour(bool boundary, int32_t region, float out[3]) {
   linear_colour(boundary ? 0x8fb8dc : inside[row], out);
 }
 
-static void fill_face(const laves_mesh *mesh, const face_entry *entry, scene_colour colour, scene_face *out) {
-  const double *points = laves_mesh_points(mesh);
+static void fill_face(const laves_mesh *mesh, const face_entry *entry, scene_colour colour, const double sizes[2],
+                      scene_face *out) {
   const int32_t *regions = laves_mesh_regions(mesh);
   int64_t tet = entry->owner / 4;
   int corner = (int)(entry->owner % 4);
   double p[4][3], u[3], v[3], inwards[3];
-  for (int k = 0; k < 4; k++) {
-    memcpy(p[k], points + 3 * laves_mesh_tets(mesh)[4 * tet + k], sizeof p[k]);
-  }
+  tet_corners(mesh, tet, p);
   for (int k = 0; k < 3; k++) {
     memcpy(out->points[k], p[tet_face[corner][k]], sizeof p[k]);
   }
@@ -257,6 +295,8 @@ static void fill_face(const laves_mesh *mesh, const face_entry *entry, scene_col
   }
   if (colour == SCENE_CLASS) {
     class_colour(entry->all == 1, regions ? regions[tet] : 1, out->colour);
+  } else if (colour == SCENE_SIZE) {
+    size_colour(edge_length(p), sizes, out->colour);
   } else {
     score_colour(colour == SCENE_DIHEDRAL ? dihedral_score(p) : volume_length(p), out->colour);
   }
@@ -274,9 +314,12 @@ bool scene_build(const laves_mesh *mesh, const scene_options *options, scene *ou
   if (!out->faces) {
     goto done;
   }
+  if (options->colour == SCENE_SIZE) {
+    size_range(mesh, out->sizes);
+  }
   for (size_t i = 0; i <= table.mask; i++) {
     if (table.entries[i].kept == 1) {
-      fill_face(mesh, &table.entries[i], options->colour, &out->faces[out->face_count++]);
+      fill_face(mesh, &table.entries[i], options->colour, out->sizes, &out->faces[out->face_count++]);
     }
   }
   done = true;

@@ -4,7 +4,7 @@
 
 #include <laves/laves.h>
 
-typedef enum scene_colour { SCENE_CLASS, SCENE_DIHEDRAL, SCENE_QUALITY } scene_colour;
+typedef enum scene_colour { SCENE_CLASS, SCENE_DIHEDRAL, SCENE_QUALITY, SCENE_SIZE } scene_colour;
 
 typedef struct scene_options {
   bool cut;
@@ -23,6 +23,7 @@ typedef struct scene {
   scene_face *faces;
   size_t face_count;
   size_t kept_tets;
+  double sizes[2];  ///< of SCENE_SIZE: the edge lengths that have the first and the last colour
 } scene;
 
 /// Returns false when memory is short. `out` is freed with scene_free() in any case.
