@@ -22,6 +22,53 @@ draw socket-cut socket.lua 60k --view -50,35 --size 640x440 --cut y
 draw gyroid gyroid.lua 40k --view 30,25 --size 560x420
 draw angles octopus.lua 30k --view -80,15 --size 760x480 --cut y --color dihedral
 
+# sized PICTURE 'VIEW OPTIONS' INPUT OPTIONS...: meshes with sizes that vary and draws them.
+sized() {
+  picture=$1 how=$2 input=$3
+  shift 3
+  "$program" mesh "$input" "$@" -q --certificate none -o "$meshes/$picture.vtu"
+  "$program" view "$meshes/$picture.vtu" $how -o "docs/images/$picture.png"
+}
+
+# For docs/sizing.md: a picture for each source of sizes.
+block='rounded_box{x=2, y=1.4, z=1.4, r=0.2}'
+inside='--cut y --view -80,12 --size 400x280 --color size'
+bracket='--view -45,35 --size 400x320 --color size'
+sized size-field "$inside" "$block" --size 0.3 --size-field 'min(0.3, 0.05 + 0.3*abs(field(sphere(0.5))))'
+cat > "$meshes/bands.nrrd" <<'end'
+NRRD0004
+type: float
+dimension: 3
+sizes: 5 2 2
+space dimension: 3
+space directions: (0.5,0,0) (0,2,0) (0,0,2)
+space origin: (-1,-1,-1)
+encoding: ascii
+
+0.2 0.04 0.2 0.08 0.2
+0.2 0.04 0.2 0.08 0.2
+0.2 0.04 0.2 0.08 0.2
+0.2 0.04 0.2 0.08 0.2
+end
+sized size-background "$inside" "$block" --size 0.3 --size-field "$meshes/bands.nrrd"
+printf '0.4 0 0.2\n1.8 0 0.2\n' > "$meshes/weld.txt"
+sized size-refine "$bracket" demo/bracket.obj --size 0.1 --refine tag:step=0.02,0.02 --refine point:0.05,0.6,1.5=0.01 \
+  --refine "curve:$meshes/weld.txt=0.015"
+sized size-curvature '--view -50,35 --size 400x300 --color size' demo/socket.lua --size 10 --curvature-elements 12
+sized size-distance '--view -60,20 --size 400x280 --color size' 'smooth_union(sphere(1), sphere(0.3):move(1.2, 0, 0), 0.2)' \
+  --size 0.4 --max-distance 0.01
+sized size-thickness "$bracket" demo/bracket.obj --size 0.2 --thickness-elements 2
+sized size-features "$bracket" demo/bracket.obj --size 0.1 --feature-elements 2
+sized size-growth '--cut y --view -80,12 --size 400x300 --color size' \
+  'metaballs{{0, 0, 0, 1}, {1, 0, 0, 0.6}, {-0.5, 0, 0.9, 0.7}}' --size 0.05 --interior-growth 0.3
+for grading in 0.1 0.5; do
+  sized "grading-$grading" '--cut y --view -80,12 --size 320x220 --color size' "$block" --size 0.3 --refine point:0,-0.1,0=0.02 \
+    --grading "$grading"
+done
+
+# For docs/graded.md.
+sized ramp '--cut y --view -80,12 --size 480x320 --color dihedral' "$block" --size 0.4 --size-field '0.02 + 0.2*abs(x)'
+
 # The worst configurations, for docs/proof.md; the test that proves the bounds writes them.
 "${program%/*}/tests/proof" --draw "$meshes" > "$meshes/worst.txt"
 "$program" view "$meshes/smallest-angle.vtu" --color dihedral --view=-135,-10 --size 400x240 -o docs/images/proof-smallest.png
