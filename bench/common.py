@@ -1,0 +1,58 @@
+"""What the files of the benchmark share: running programs, figures with their targets, tables."""
+
+import json
+import os
+import subprocess
+import tempfile
+import time
+
+
+class Run:
+    """A child process: exit code (None: timed out), CPU and wall seconds, most bytes, output."""
+
+    def __init__(self, command, folder=None, timeout=1200):
+        with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+            start = time.monotonic()
+            child = subprocess.Popen(command, stdout=out, stderr=err, cwd=folder)
+            expired = False
+            while True:
+                pid, status, usage = os.wait4(child.pid, os.WNOHANG)
+                if pid:
+                    break
+                if time.monotonic() - start > timeout and not expired:
+                    expired = True
+                    child.kill()
+                time.sleep(0.002)
+            child.returncode = os.waitstatus_to_exitcode(status)
+            self.wall = time.monotonic() - start
+            self.code = None if expired else child.returncode
+            self.cpu = usage.ru_utime + usage.ru_stime
+            self.peak = usage.ru_maxrss * 1024
+            out.seek(0)
+            err.seek(0)
+            self.out = out.read().decode(errors="replace")
+            self.err = err.read().decode(errors="replace")
+
+
+def figure(name, value, target, met):
+    """One promised figure. met None: told for information, no target."""
+    return {"name": name, "value": value, "target": target, "met": met}
+
+
+def last_sentence(text):
+    lines = [line for line in text.strip().splitlines() if line.startswith("laves: ")]
+    return lines[-1][len("laves: "):] if lines else ""
+
+
+def mesh_facts(run, json_path):
+    """What `laves mesh --json` told, or None when it made no mesh."""
+    if run.code not in (0, 3):
+        return None
+    with open(json_path) as file:
+        return json.load(file)
+
+
+def table(header, rows):
+    align = ["---" if i == 0 else "---:" for i in range(len(header))]
+    lines = ["| " + " | ".join(cells) + " |" for cells in [header, *rows]]
+    return "\n".join([lines[0], "|" + "|".join(align) + "|", *lines[1:]])
