@@ -6,6 +6,7 @@
  * boundary. A surface vertex may only go into another one along a boundary edge. */
 #include "improve/contract.h"
 
+#include "improve/fit.h"
 #include "improve/smooth.h"
 
 enum {
@@ -19,10 +20,6 @@ static const double longest = 1.2;
 static const double hopeless = 0.25;
 /* Nor one whose own smoothing does not come this near to the old worst. */
 static const double promising = 0.8;
-/* Faces after a contraction may lie this far from the surface, in local sizes, and this much across it (cosine of the angle
- * between the normals), or as much as those before. */
-static const double deviation_max = 0.10, alignment_min = 0.8;
-
 typedef struct ring {
   int32_t tet[NEIGHBOURS_MAX]; /* that hold both ends */
   int tet_count;
@@ -182,38 +179,6 @@ static double worst_touched(const laves__layer *layer, const laves__journal *j) 
   return worst;
 }
 
-/* How the boundary faces around a vertex lie to the surface. */
-typedef struct fit {
-  double deviation; /* largest distance of centroids and edge midpoints, local sizes */
-  double alignment; /* least cosine between a face's normal and the surface's */
-} fit;
-
-static void fit_point(const laves__frame *frame, laves__vec3 p, laves__vec3 face_normal, uint32_t hint, double scale, fit *f) {
-  laves__vec3 foot, normal;
-  if (!laves__frame_project(frame, p, scale, &hint, &foot, &normal)) {
-    *f = (fit){1, -1};
-    return;
-  }
-  f->deviation = fmax(f->deviation, v3_distance(p, foot) / scale);
-  f->alignment = fmin(f->alignment, v3_dot(face_normal, normal));
-}
-
-static void fit_star(const laves__frame *frame, const laves__layer *layer, int32_t a, fit *f) {
-  const double scale = laves__layer_scale(layer, a);
-  const laves__star *star = &layer->star[a];
-  for (int i = 0; i < star->count; i++) {
-    const int32_t t = star->tet[i];
-    for (int k = 0; k < 4; k++) {
-      if (layer->tet[t][k] == a || !laves__layer_is_boundary_face(layer, t, k)) continue;
-      laves__vec3 p[3];
-      for (int v = 0; v < 3; v++) p[v] = layer->position[layer->tet[t][laves__tet_face[k][v]]];
-      const laves__vec3 normal = v3_unit(v3_cross(v3_sub(p[1], p[0]), v3_sub(p[2], p[0])));
-      fit_point(frame, v3_scale(v3_add(v3_add(p[0], p[1]), p[2]), 1.0 / 3), normal, layer->hint[a], scale, f);
-      for (int v = 0; v < 3; v++) fit_point(frame, v3_lerp(p[v], p[(v + 1) % 3], 0.5), normal, layer->hint[a], scale, f);
-    }
-  }
-}
-
 typedef struct contraction {
   const laves__frame *frame;
   const laves__measure *measure;
@@ -233,20 +198,18 @@ static bool try_contraction(const contraction *c, laves__layer *layer, int32_t a
   return worst_touched(layer, j) > before;
 }
 
-static bool fits(const fit *f, const fit *limit) { return f->deviation <= limit->deviation && f->alignment >= limit->alignment; }
-
 /* Whether the boundary around a, just changed, lies well enough to the surface: within the limits or, which is looked at
  * only when it does not, as well as before. For the latter the change is undone, looked at, and made again. */
 static bool keeps_surface(const contraction *c, laves__layer *layer, int32_t a, int32_t b, const ring *r, double before,
                           laves__journal *j) {
-  const fit limit = {deviation_max, alignment_min};
-  fit now = {0, 1}, earlier = limit;
-  fit_star(c->frame, layer, a, &now);
-  if (fits(&now, &limit)) return true;
+  const laves__fit limit = LAVES__FIT_LIMIT;
+  laves__fit now = LAVES__FIT_NONE, earlier = limit;
+  laves__fit_star(c->frame, layer, a, &now);
+  if (laves__fit_within(&now, &limit)) return true;
   laves__journal_undo(j, layer);
-  fit_star(c->frame, layer, a, &earlier);
-  if (layer->depth[b] == 0) fit_star(c->frame, layer, b, &earlier);
-  return fits(&now, &earlier) && try_contraction(c, layer, a, b, r, before, j);
+  laves__fit_star(c->frame, layer, a, &earlier);
+  if (layer->depth[b] == 0) laves__fit_star(c->frame, layer, b, &earlier);
+  return laves__fit_within(&now, &earlier) && try_contraction(c, layer, a, b, r, before, j);
 }
 
 static bool contract(const contraction *c, laves__layer *layer, int32_t a, int32_t b, laves__journal *j) {

@@ -7,15 +7,24 @@
  * size is at most a power of two are worked on in blocks of that many times the side, the largest first.
  *
  * First passes only smooth; when that no longer helps, contraction joins in; the few that are still clearly outside are
- * treated once more with more smoothing around each contraction. */
+ * treated once more with more smoothing around each contraction. On a graded background flips join in from the first. */
 #include <stdlib.h>
 
 #include "improve/contract.h"
+#include "improve/flip.h"
 #include "improve/peel.h"
 #include "improve/relax.h"
 #include "improve/smooth.h"
 
-enum { SWEEPS = 2, SMOOTH_PASSES = 5, CONTRACT_PASSES = 12, CROWD_PASSES = 2, THOROUGH_ROUNDS = 3, TRIES_MAX = 4 };
+enum {
+  SWEEPS = 2,
+  SMOOTH_PASSES = 5,
+  FLIP_PASSES = 10,
+  CONTRACT_PASSES = 12,
+  CROWD_PASSES = 2,
+  THOROUGH_ROUNDS = 3,
+  TRIES_MAX = 4
+};
 /* Where more than this share of the layer is bad after smoothing, walls are a tet thick and the window can't be met there:
  * few passes of contraction, and no more patience. */
 static const double crowd = 0.03;
@@ -29,6 +38,7 @@ static const double brief_admit = 0.6;      /* about 32 degrees */
 static const double block_side = 15;        /* local sizes; see above */
 static const double worthwhile = 0.02;      /* share of bad tets that a pass must cure to be followed by its like */
 static const double thorough_below = 0.985; /* quality below which the few that remain get more patience */
+static const double far_outside = 0.75;     /* quality: about 36 to 131 degrees for the standard window */
 static const double peel_below = 0.5;       /* quality below which a tet between two surfaces is taken away, if it can be */
 static const double settle_floor = 0.2;     /* quality that bringing a vertex back to the surface may cost: about 18 degrees */
 
@@ -40,6 +50,9 @@ laves__measure laves__measure_of(const laves__window *w) {
                           .held_low = w->held_min > 0 ? 1 - cos(w->held_min * radians) : -1,
                           .held_high = w->held_min > 0 ? 1 + cos(w->held_max * radians) : -1};
 }
+
+/* Where sizes vary, the lattice's connectivity is not what it is in C15, and flips pay; they need some dead tets. */
+static const size_t spare_share = 8, spare_min = 1024;
 
 /* A bad tet and the block of space in which it is worked on; blocks of a level are 2^level times as large. */
 typedef struct patient {
@@ -60,6 +73,8 @@ typedef struct work {
   size_t block_count, block_capacity;
   double progress; /* share of the first bad tets that are cured, for the caller's eyes */
   size_t first_count;
+  int32_t *spare; /* [spare_count] dead tets that flips may use, shared out among the blocks; NULL: no flips */
+  size_t spare_count;
   uint8_t *tries;   /* [tet_count] full treatments so far, at most TRIES_MAX */
   double *stuck;    /* [tet_count] surroundings in which smoothing ended */
   double *given_up; /* [tet_count] surroundings in which the last full treatment failed */
@@ -150,20 +165,49 @@ static void smooth_corners(const work *w, int32_t t, bool on_surface) {
   }
 }
 
+/* Other tets between the same vertices, and their corners smoothed; what is known of the tets touched is forgotten. */
+static void flip(work *w, int32_t t, laves__slots *slots, laves__journal *journal) {
+  if (!laves__flip_tet(w->frame, &w->measure, w->layer, t, slots, journal)) return;
+  for (size_t i = 0; i < journal->tet_count; i++) {
+    const int32_t touched = journal->tet[i].tet;
+    w->given_up[touched] = w->stuck[touched] = HUGE_VAL;
+    w->tries[touched] = 0;
+    if (!is_bad(w, touched)) continue;
+    smooth_corners(w, touched, false);
+    smooth_corners(w, touched, true);
+  }
+  laves__journal_clear(journal);
+}
+
 /* Inner corners first: they are free to move and need no projection; most tets need no more.
  * A tet that withstood a treatment does not get it again until something around it changes. */
-static void mend(work *w, int32_t t, laves__journal *journal) {
+static void mend(work *w, int32_t t, laves__slots *slots, laves__journal *journal) {
   const double before = surroundings(w->layer, t);
   if (before == w->given_up[t]) return;
   if (before != w->stuck[t]) {
     smooth_corners(w, t, false);
     smooth_corners(w, t, true);
     w->stuck[t] = surroundings(w->layer, t);
+    if (w->spare && is_bad(w, t)) flip(w, t, slots, journal);
+    if (w->layer->tet[t][0] < 0) return;
   }
   if (w->rounds == 0 || !is_bad(w, t) || w->tries[t] == TRIES_MAX) return;
   w->tries[t]++;
   if (!laves__contract_tet(w->frame, &w->measure, w->target, w->layer, t, w->rounds, journal))
     w->given_up[t] = surroundings(w->layer, t);
+}
+
+/* Dead tets are shared out by the bad tets of each block. */
+static laves__slots slots_of(const work *w, size_t block) {
+  const size_t first = w->spare_count * w->block[block] / w->count, end = w->spare_count * w->block[block + 1] / w->count;
+  return (laves__slots){.tet = w->spare ? w->spare + first : NULL, .count = (int32_t)(end - first)};
+}
+
+/* Lists the dead tets anew. */
+static void collect_spare(work *w) {
+  w->spare_count = 0;
+  for (size_t t = 0; w->spare && t < w->layer->tet_count; t++)
+    if (w->layer->tet[t][0] < 0) w->spare[w->spare_count++] = (int32_t)t;
 }
 
 typedef struct colour_range {
@@ -175,17 +219,20 @@ typedef struct colour_range {
 static void mend_blocks(void *user, size_t begin, size_t end, int worker) {
   const colour_range *range = user;
   work *w = range->w;
-  for (size_t b = range->first_block + begin; b < range->first_block + end; b++)
+  for (size_t b = range->first_block + begin; b < range->first_block + end; b++) {
+    laves__slots slots = slots_of(w, b);
     for (size_t i = w->block[b]; i < w->block[b + 1]; i++) {
       if (laves__is_cancelled(w->layer->context)) return;
       if (worker == 0 && laves__cancelled(w->layer->context, "improve", w->progress)) return;
-      if (is_bad(w, w->item[i].tet)) mend(w, w->item[i].tet, &w->journal[worker]);
+      if (is_bad(w, w->item[i].tet)) mend(w, w->item[i].tet, &slots, &w->journal[worker]);
     }
+  }
 }
 
 /* One pass over the bad tets; how many there were goes to *before. */
 static laves_result run_pass(work *w, size_t *before, laves_error *error) {
   if (!admit_all(w)) return laves__fail_memory(w->layer->context, error);
+  collect_spare(w);
   *before = w->count;
   if (w->first_count == 0) w->first_count = w->count;
   if (w->count) w->progress = fmax(w->progress, 1 - (double)w->count / (double)w->first_count);
@@ -235,16 +282,68 @@ static bool is_crowded(const work *w, double share) {
   return bad > crowd_min && (double)bad > share * (double)w->layer->tet_count;
 }
 
+/* Patience is new for all that remains. */
+static void forget(work *w) {
+  for (size_t t = 0; t < w->layer->tet_count; t++) {
+    w->given_up[t] = HUGE_VAL;
+    w->tries[t] = 0;
+  }
+}
+
+/* The lattice's connectivity is good: smoothing does nearly all, contraction the rest. */
+static laves_result mend_tiling(work *w, bool brief, laves_error *error) {
+  if (brief) w->admit = brief_admit;
+  laves_result result = run_passes(w, 1, 1, error);
+  const bool rough = brief || is_crowded(w, rough_share);
+  if (result == LAVES_OK) result = run_passes(w, rough ? 1 : SMOOTH_PASSES - 1, 1, error);
+  if (result == LAVES_OK) settle_all(w);
+  const bool crowded = is_crowded(w, crowd);
+  w->rounds = 1;
+  if (rough) w->admit = rough_admit;
+  if (result == LAVES_OK) result = run_passes(w, rough ? 1 : crowded ? CROWD_PASSES : CONTRACT_PASSES, 2, error);
+  if (result == LAVES_OK) peel_all(w);
+  w->rounds = THOROUGH_ROUNDS;
+  w->admit = thorough_below;
+  forget(w);
+  if (result == LAVES_OK && !crowded && !rough) result = run_passes(w, CONTRACT_PASSES, 2, error);
+  if (result == LAVES_OK) peel_all(w);
+  return result;
+}
+
+/* Where sizes vary many tets are bad at first; smoothing and flips make most of them good. Contraction, which is dear, is for
+ * those that are far outside, and for the others when they are few. */
+static laves_result mend_graded(work *w, laves_error *error) {
+  laves_result result = run_passes(w, FLIP_PASSES, 2, error);
+  if (result == LAVES_OK) settle_all(w);
+  const bool crowded = is_crowded(w, crowd);
+  w->rounds = 1;
+  w->admit = far_outside;
+  if (result == LAVES_OK) result = run_passes(w, CONTRACT_PASSES, 2, error);
+  if (result == LAVES_OK) peel_all(w);
+  w->admit = 1;
+  if (result == LAVES_OK && !crowded) result = run_passes(w, CROWD_PASSES, 2, error);
+  w->rounds = THOROUGH_ROUNDS;
+  w->admit = crowded ? far_outside : thorough_below;
+  forget(w);
+  if (result == LAVES_OK) result = run_passes(w, CONTRACT_PASSES, 2, error);
+  if (result == LAVES_OK) peel_all(w);
+  return result;
+}
+
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {
   laves_context *context = layer->context;
+  const bool graded = layer->scale != NULL;
   work w = {.frame = frame, .measure = laves__measure_of(window), .target = 1, .admit = 1, .layer = layer};
   const int workers = laves__workers(context);
   laves_result result = LAVES_OK;
+  if (graded && !laves__layer_extend(layer, layer->tet_count / spare_share + spare_min))
+    return laves__fail_memory(context, error);
+  if (graded) w.spare = laves__alloc(context, layer->tet_count, sizeof *w.spare);
   w.journal = laves__alloc_zeroed(context, (size_t)workers, sizeof *w.journal);
   w.given_up = laves__alloc(context, layer->tet_count, sizeof *w.given_up);
   w.stuck = laves__alloc(context, layer->tet_count, sizeof *w.stuck);
   w.tries = laves__alloc_zeroed(context, layer->tet_count, 1);
-  if (!w.journal || !w.given_up || !w.stuck || !w.tries) {
+  if (!w.journal || !w.given_up || !w.stuck || !w.tries || (graded && !w.spare)) {
     result = laves__fail_memory(context, error);
     goto cleanup;
   }
@@ -252,27 +351,11 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
   if (!laves__parallel_for(context, NULL, layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
   if (result == LAVES_OK) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
-  if (window->brief) w.admit = brief_admit;
-  if (result == LAVES_OK) result = run_passes(&w, 1, 1, error);
-  const bool rough = window->brief || is_crowded(&w, rough_share);
-  if (result == LAVES_OK) result = run_passes(&w, rough ? 1 : SMOOTH_PASSES - 1, 1, error);
-  if (result == LAVES_OK) settle_all(&w);
-  const bool crowded = is_crowded(&w, crowd);
-  w.rounds = 1;
-  if (rough) w.admit = rough_admit;
-  if (result == LAVES_OK) result = run_passes(&w, rough ? 1 : crowded ? CROWD_PASSES : CONTRACT_PASSES, 2, error);
-  if (result == LAVES_OK) peel_all(&w);
-  w.rounds = THOROUGH_ROUNDS;
-  w.admit = thorough_below;
-  for (size_t t = 0; t < layer->tet_count; t++) {
-    w.given_up[t] = HUGE_VAL;
-    w.tries[t] = 0;
-  }
-  if (result == LAVES_OK && !crowded && !rough) result = run_passes(&w, CONTRACT_PASSES, 2, error);
-  if (result == LAVES_OK) peel_all(&w);
+  if (result == LAVES_OK) result = graded ? mend_graded(&w, error) : mend_tiling(&w, window->brief, error);
   if (result == LAVES_OK) settle_all(&w);
 cleanup:
   for (int i = 0; w.journal && i < workers; i++) laves__journal_free(&w.journal[i]);
+  laves__free(context, w.spare, layer->tet_count, sizeof *w.spare);
   laves__free(context, w.tries, layer->tet_count, 1);
   laves__free(context, w.stuck, layer->tet_count, sizeof *w.stuck);
   laves__free(context, w.given_up, layer->tet_count, sizeof *w.given_up);

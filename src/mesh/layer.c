@@ -55,6 +55,30 @@ laves_result laves__layer_link(laves__layer *layer, laves_error *error) {
   return LAVES_OK;
 }
 
+bool laves__layer_extend(laves__layer *layer, size_t extra) {
+  const size_t old = layer->tet_count, count = old + extra;
+  if (count > INT32_MAX) return false;
+  int32_t(*tet)[4] = laves__alloc(layer->context, count, sizeof *tet);
+  double *quality = laves__alloc(layer->context, count, sizeof *quality);
+  if (!tet || !quality) {
+    laves__free(layer->context, tet, count, sizeof *tet);
+    laves__free(layer->context, quality, count, sizeof *quality);
+    return false;
+  }
+  memcpy(tet, layer->tet, old * sizeof *tet);
+  memcpy(quality, layer->quality, old * sizeof *quality);
+  for (size_t t = old; t < count; t++) {
+    tet[t][0] = -1;
+    quality[t] = 0;
+  }
+  laves__free(layer->context, layer->tet, old, sizeof *tet);
+  laves__free(layer->context, layer->quality, old, sizeof *quality);
+  layer->tet = tet;
+  layer->quality = quality;
+  layer->tet_count = count;
+  return true;
+}
+
 void laves__layer_free(laves__layer *layer) {
   laves_context *context = layer->context;
   if (!context) return;

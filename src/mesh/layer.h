@@ -48,6 +48,8 @@ laves_result laves__layer_create(laves_context *context, size_t vertex_count, si
                                  laves_error *error);
 /* Makes the stars from tets and depths. */
 laves_result laves__layer_link(laves__layer *layer, laves_error *error);
+/* Adds dead tets, for operations that need more than they free; false when memory is short. */
+bool laves__layer_extend(laves__layer *layer, size_t extra);
 void laves__layer_free(laves__layer *layer);
 
 static inline void laves__layer_points(const laves__layer *layer, int32_t tet, laves__vec3 p[4]) {
