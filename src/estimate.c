@@ -3,9 +3,10 @@
  * In: what laves_generate() takes.  Out: counts. Sizes that vary are made into the octree that the mesh would have, whose leaves
  * are counted by the share of each that is inside; one size everywhere goes by the volume. With a target, all sizes are scaled
  * together until the estimate meets it, as the pipeline does with the counts themselves. */
+#include "estimate.h"
+
 #include "background/c15_table.h"
 #include "graded/graded.h"
-#include "graded/wishes.h"
 #include "options.h"
 
 static const double cell_side = LAVES__C15_PERIOD / LAVES__C15_MEAN_EDGE;
@@ -20,18 +21,18 @@ typedef struct estimating {
   laves__wishes wishes;
 } estimating;
 
-static laves_result count_graded(estimating *e, laves_expectation *out, laves_error *error) {
+laves_result laves__estimate_graded(laves_context *context, const laves_options *options, laves__wishes *wishes,
+                                    laves__frame *frame, laves_expectation *counts, laves_error *error) {
   for (int correction = 0;; correction++) {
     laves__demand demand;
-    if (!laves__wishes_demand(&e->wishes, &e->frame, &demand)) return laves__fail_memory(e->context, error);
-    laves_result result = laves__graded_estimate(&e->frame, &demand, e->context, &out->tets, &out->vertices, error);
-    if (result == LAVES_OK) result = laves__size_status(e->sizes, error);
+    if (!laves__wishes_demand(wishes, frame, &demand)) return laves__fail_memory(context, error);
+    laves_result result = laves__graded_estimate(frame, &demand, context, &counts->tets, &counts->vertices, error);
+    if (result == LAVES_OK) result = laves__size_status(wishes->size, error);
     if (result != LAVES_OK) return result;
-    const double factor = laves__options_correction(e->options, (int64_t)out->tets, (int64_t)out->vertices);
-    if (factor == 1 || correction == CORRECTIONS) break;
-    e->frame.size *= factor;
+    const double factor = laves__options_correction(options, (int64_t)counts->tets, (int64_t)counts->vertices);
+    if (factor == 1 || correction == CORRECTIONS) return LAVES_OK;
+    frame->size *= factor;
   }
-  return LAVES_OK;
 }
 
 static void count_uniform(const estimating *e, double size, laves_expectation *out) {
@@ -65,7 +66,7 @@ laves_result laves_estimate(laves_context *context, const laves_domain *domain, 
     count_uniform(&e, e.frame.size, expectation);
   } else if (result == LAVES_OK) {
     result = laves__wishes_make(context, e.sizes, e.frame.size, &e.wishes, error);
-    if (result == LAVES_OK) result = count_graded(&e, expectation, error);
+    if (result == LAVES_OK) result = laves__estimate_graded(context, options, &e.wishes, &e.frame, expectation, error);
   }
   expectation->size = e.frame.size;
   laves__wishes_free(&e.wishes);

@@ -10,6 +10,7 @@
 
 #include "assemble/assemble.h"
 #include "classify/classify.h"
+#include "estimate.h"
 #include "graded/graded.h"
 #include "graded/wishes.h"
 #include "improve/improve.h"
@@ -35,6 +36,7 @@ typedef struct run {
   laves__snap_counts counts;
   laves__stuff_counts stuffed;
   const laves__guarantee *guarantee; /* NULL: nothing is promised */
+  double counted, kept;              /* tets or vertices before improvement, whichever are asked for; their share after it */
   int round;                         /* of refinement for the sake of the distance */
   size_t distant;                    /* places still further away than asked */
   bool rough;                        /* the solid is rougher than the size */
@@ -86,6 +88,8 @@ static laves_result choose_frame(run *r) {
   return laves__fail(r->error, LAVES_ERROR_INPUT, "no inside was found: the volume of the solid is %g", r->report->volume);
 }
 
+static bool has_target(const laves_options *o) { return o->tet_target > 0 || o->vertex_target > 0; }
+
 /* What is wished where. A field that turns out to be the same everywhere is none. */
 static laves_result choose_sizes(run *r) {
   const double base = r->frame.size;
@@ -98,6 +102,10 @@ static laves_result choose_sizes(run *r) {
   } else if (result == LAVES_OK) {
     r->guarantee = NULL; /* what is proved is proved for one size */
     result = laves__wishes_make(r->context, r->sizes, base, &r->wishes, r->error);
+    if (result == LAVES_OK && has_target(r->options)) {
+      laves_expectation counts;
+      result = laves__estimate_graded(r->context, r->options, &r->wishes, &r->frame, &counts, r->error);
+    }
   }
   if (r->sizes) end_stage(r, "sizes");
   if (result == LAVES_OK && r->sizes && r->options->method == LAVES_METHOD_STUFF)
@@ -234,7 +242,9 @@ static laves_result make_boundary(run *r) {
     if (result != LAVES_OK) return result;
     int64_t vertices, tets;
     laves__assemble_estimate(&r->lattice, &r->layer, &vertices, &tets);
-    const double factor = laves__options_correction(r->options, tets, vertices);
+    r->counted = r->options->tet_target ? (double)tets : (double)vertices;
+    const double factor =
+        laves__options_correction(r->options, (int64_t)((double)tets * r->kept), (int64_t)((double)vertices * r->kept));
     if (tets == 0) return nothing_resolved(r);
     if (factor == 1 || correction == corrections) break;
     r->frame.size *= factor;
@@ -325,6 +335,21 @@ static laves_result make_mesh(run *r, laves_mesh **mesh) {
   return result;
 }
 
+/* Where sizes vary improvement may cost some per cent of a count that was asked for; then all is made again, once, for a count
+ * that is larger by as much. */
+static laves_result count_again(run *r, laves_mesh **mesh, bool *again) {
+  static const double tolerance = 0.02;
+  const laves_options *o = r->options;
+  const double wished = o->tet_target ? (double)o->tet_target : (double)o->vertex_target;
+  const double got = o->tet_target ? (double)(*mesh)->tet_count : (double)(*mesh)->vertex_count;
+  *again = r->sizes && has_target(o) && r->kept == 1 && fabs(got / wished - 1) > tolerance;
+  if (!*again) return LAVES_OK;
+  r->kept = got / r->counted;
+  laves_mesh_free(*mesh);
+  *mesh = NULL;
+  return LAVES_OK;
+}
+
 /* Where the boundary is further from the surface than asked, smaller sizes are wished, as far as the distance falls with the
  * square of the size; then all is made again. *again: it must be. */
 static laves_result refine_where_distant(run *r, laves_mesh **mesh, bool *again) {
@@ -408,7 +433,12 @@ static laves_result judge(run *r, const laves_mesh *mesh) {
 laves_result laves_generate(laves_context *context, const laves_domain *domain, const laves_options *options, laves_mesh **mesh,
                             laves_report *report, laves_error *error) {
   laves_report own_report;
-  run r = {.context = context, .domain = domain, .options = options, .report = report ? report : &own_report, .error = error};
+  run r = {.context = context,
+           .domain = domain,
+           .options = options,
+           .report = report ? report : &own_report,
+           .error = error,
+           .kept = 1};
   memset(r.report, 0, sizeof *r.report);
   *mesh = NULL;
   laves__progress_reset(context);
@@ -422,6 +452,7 @@ laves_result laves_generate(laves_context *context, const laves_domain *domain, 
     if (result == LAVES_OK) result = improve_and_keep_promise(&r);
     if (result == LAVES_OK) result = make_mesh(&r, mesh);
     if (result == LAVES_OK) result = refine_where_distant(&r, mesh, &again);
+    if (result == LAVES_OK && !again) result = count_again(&r, mesh, &again);
   }
   if (result == LAVES_OK) result = judge(&r, *mesh);
 

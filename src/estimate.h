@@ -1,0 +1,12 @@
+/* Counts of a graded mesh from the leaves of its octree, for laves_estimate() and for the pipeline's first guess. */
+#ifndef LAVES_ESTIMATE_H
+#define LAVES_ESTIMATE_H
+
+#include "graded/wishes.h"
+
+/* Stretches the frame, and with it all sizes, until the estimate meets the count that is asked for, if one is; the counts at
+ * the end. LAVES_ERROR_INPUT when a source of sizes failed, LAVES_ERROR_OPTION, LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
+laves_result laves__estimate_graded(laves_context *context, const laves_options *options, laves__wishes *wishes,
+                                    laves__frame *frame, laves_expectation *counts, laves_error *error);
+
+#endif
