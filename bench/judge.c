@@ -5,7 +5,8 @@
  * MESH: any format that laves reads. Told are counts, validity, topology, angles, the histogram of radius ratios, and the
  * tiles; angles apart for the interior, which is the tetrahedra without a vertex on the boundary.
  * --size: an expression of x, y and z, the wished edge length; adds the lengths of edges over the wish at their midpoints, at 1,
- * 5, 50, 95 and 99 %, and the share of edges within 0.6 and 1.5, of all edges and of those of the interior. Each edge counts once.
+ * 5, 50, 95 and 99 %, and the share of edges within 0.6 and 1.5, of all edges and of those of the interior. Each edge counts
+ * once.
  * --surface: what the mesh should fill; adds the distances both ways, in units of the input. */
 #include <laves/laves.h>
 #include <math.h>
@@ -76,10 +77,11 @@ static void dihedrals(const vec p[4], double *least, double *most) {
 static double radius_ratio(const vec p[4]) {
   const vec u = minus(p[1], p[0]), v = minus(p[2], p[0]), w = minus(p[3], p[0]);
   const double six = fabs(dot(u, cross(v, w)));
-  const double a = norm(u) * norm(minus(p[3], p[2])), b = norm(v) * norm(minus(p[3], p[1])), c = norm(w) * norm(minus(p[2], p[1]));
+  const double a = norm(u) * norm(minus(p[3], p[2])), b = norm(v) * norm(minus(p[3], p[1])),
+               c = norm(w) * norm(minus(p[2], p[1]));
   const double square = (a + b + c) * (b + c - a) * (c + a - b) * (a + b - c);
-  const double area = 0.5 * (norm(cross(u, v)) + norm(cross(v, w)) + norm(cross(w, u)) +
-                             norm(cross(minus(p[2], p[1]), minus(p[3], p[1]))));
+  const double area =
+      0.5 * (norm(cross(u, v)) + norm(cross(v, w)) + norm(cross(w, u)) + norm(cross(minus(p[2], p[1]), minus(p[3], p[1]))));
   if (!(square > 0 && area > 0)) return 0;
   const double inner = 0.5 * six / area, outer = sqrt(square) / (4 * six);
   return 3 * inner / outer;
@@ -229,7 +231,8 @@ static void print_ratios(const char *name, double *ratios, size_t count) {
   printf(", \"%s\": {\"edges\": %zu", name, count);
   print_field("fit", (double)fit / (double)count);
   printf(", \"levels\": [");
-  for (int i = 0; i < LEVELS && count; i++) printf(i ? ", %.6g" : "%.6g", ratios[(size_t)(levels[i] * (double)(count - 1) + 0.5)]);
+  for (int i = 0; i < LEVELS && count; i++)
+    printf(i ? ", %.6g" : "%.6g", ratios[(size_t)(levels[i] * (double)(count - 1) + 0.5)]);
   printf("]}");
 }
 

@@ -104,7 +104,7 @@ static inline bool laves__tet_is(const laves__lattice *lattice, laves__tet t, la
   if (lattice->graph) return lattice->graph->flags[laves__graph_tet(t)] & flag;
   return laves__bit(laves__tet_bits(&lattice->record[t.cell], flag), t.tet);
 }
-static inline void laves__flip_tet(const laves__lattice *lattice, laves__tet t, laves__tet_flag flag) {
+static inline void laves__toggle_tet(const laves__lattice *lattice, laves__tet t, laves__tet_flag flag) {
   if (lattice->graph)
     lattice->graph->flags[laves__graph_tet(t)] ^= (uint8_t)flag;
   else

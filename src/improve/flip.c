@@ -265,8 +265,7 @@ static bool join_stars(laves__layer *layer, int32_t tet) {
 static bool make(laves__layer *layer, const change *c, laves__slots *slots, laves__journal *j) {
   int32_t place[TETS_MAX];
   int taken = 0;
-  for (int i = 0; i < c->fresh_count; i++)
-    place[i] = i < c->old_count ? c->old[i] : slots->tet[slots->count - 1 - taken++];
+  for (int i = 0; i < c->fresh_count; i++) place[i] = i < c->old_count ? c->old[i] : slots->tet[slots->count - 1 - taken++];
   laves__journal_clear(j);
   for (int i = 0; i < c->old_count; i++)
     if (!laves__journal_tet(j, layer, c->old[i]) || !remember(j, layer, layer->tet[c->old[i]])) return false;

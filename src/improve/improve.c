@@ -311,21 +311,22 @@ static laves_result mend_tiling(work *w, bool brief, laves_error *error) {
 }
 
 /* Where sizes vary many tets are bad at first; smoothing and flips make most of them good. Contraction, which is dear, is for
- * those that are far outside, and for the others when they are few. */
+ * those that are far outside, and for the others when they are few; where even the first are many, the solid is noise. */
 static laves_result mend_graded(work *w, laves_error *error) {
   laves_result result = run_passes(w, FLIP_PASSES, 2, error);
   if (result == LAVES_OK) settle_all(w);
   const bool crowded = is_crowded(w, crowd);
   w->rounds = 1;
   w->admit = far_outside;
-  if (result == LAVES_OK) result = run_passes(w, CONTRACT_PASSES, 2, error);
+  const bool rough = is_crowded(w, crowd);
+  if (result == LAVES_OK) result = run_passes(w, rough ? 1 : CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) peel_all(w);
   w->admit = 1;
   if (result == LAVES_OK && !crowded) result = run_passes(w, CROWD_PASSES, 2, error);
   w->rounds = THOROUGH_ROUNDS;
   w->admit = crowded ? far_outside : thorough_below;
   forget(w);
-  if (result == LAVES_OK) result = run_passes(w, CONTRACT_PASSES, 2, error);
+  if (result == LAVES_OK && !rough) result = run_passes(w, CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) peel_all(w);
   return result;
 }

@@ -155,7 +155,7 @@ static int toggle_gain(const repair *w, laves__tet tet, const laves__site corner
 static void toggle(const repair *w, laves__tet tet) {
   laves__site corner[4];
   laves__corners_of(w->lattice, tet, corner);
-  laves__flip_tet(w->lattice, tet, LAVES__TET_SOLID);
+  laves__toggle_tet(w->lattice, tet, LAVES__TET_SOLID);
   for (int k = 0; k < 4; k++) {
     w->kept[corner[k].cell][corner[k].site] ^= UINT64_C(1) << slot_at(w, corner[k], tet, k);
     w->dirty[corner[k].cell] = true;

@@ -64,10 +64,10 @@ static void judge_tet(const search *s, laves__tet tet) {
   double scale;
   bool forced;
   if (!all_on(s, tet, p, &scale, &forced) || !laves__solid_shape(p, scale)) return;
-  laves__flip_tet(s->lattice, tet, LAVES__TET_ELIGIBLE);
+  laves__toggle_tet(s->lattice, tet, LAVES__TET_ELIGIBLE);
   const laves__vec3 middle = v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25);
   if (laves__lies_inside(s->frame, middle, (forced ? thin_depth_min : depth_min) * scale))
-    laves__flip_tet(s->lattice, tet, LAVES__TET_SOLID);
+    laves__toggle_tet(s->lattice, tet, LAVES__TET_SOLID);
 }
 
 /* A cell of the tiling: four bits rule out most tets. */
