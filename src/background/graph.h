@@ -30,7 +30,7 @@ typedef struct laves__graph {
   laves_context *context;
   size_t vertex_count, tet_count;
   laves__vec3 *position; /* [vertex_count] lattice coordinates */
-  float *scale;          /* [vertex_count] the mean length of the edges that are wished around it, in sizes */
+  float *scale;          /* [vertex_count] the mean length of the edges around it, in sizes */
   bool *hull;            /* [vertex_count] see above */
   int32_t (*tet)[4];     /* [tet_count] all positive */
   uint8_t *tile;         /* [tet_count] laves__tile */

@@ -15,7 +15,7 @@ enum { SEEDS = 10 };
 
 /* Fields as steep, as rough and as narrow as may be. */
 static const char *const fields[] = {
-    "0.08 + 0.3*abs(x)", "0.1 + 0.08*sin(40*x)*sin(40*y)", "0.07 + 0.5*d", "0.3*max(0.3, 1 - 10*abs(x + y + z))",
+    "0.08 + 0.3*abs(x)",       "0.1 + 0.08*sin(40*x)*sin(40*y)", "0.07 + 0.5*d", "0.3*max(0.3, 1 - 10*abs(x + y + z))",
     "0.1 + 0.2*abs(sin(9*x))",
 };
 

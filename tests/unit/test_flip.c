@@ -46,8 +46,7 @@ static double volume_of(const laves__layer *l, size_t *alive) {
 static void assert_stars_right(const laves__layer *l) {
   for (size_t v = 0; v < l->vertex_count; v++) {
     int count = 0;
-    for (size_t t = 0; t < l->tet_count; t++)
-      count += l->tet[t][0] >= 0 && laves__layer_corner(l, (int32_t)t, (int32_t)v) >= 0;
+    for (size_t t = 0; t < l->tet_count; t++) count += l->tet[t][0] >= 0 && laves__layer_corner(l, (int32_t)t, (int32_t)v) >= 0;
     if (!laves__layer_moves(l, (int32_t)v)) continue;
     assert_int_equal(l->star[v].count, count);
     for (int i = 0; i < l->star[v].count; i++) assert_true(laves__layer_corner(l, l->star[v].tet[i], (int32_t)v) >= 0);
