@@ -13,7 +13,8 @@
 static const double roundness = 1.8;
 /* Sizes between the corners of a leaf of the asked size: half a period. */
 static const double whole_side = LAVES__C15_PERIOD / 2 / LAVES__C15_MEAN_EDGE;
-static const double widening = 1.5; /* sides around a leaf within which nothing of the solid may lie for it to be outside */
+static const double widening = 1.5;     /* sides around a leaf within which nothing of the solid may lie for it to be outside */
+static const double sample_reach = 0.8; /* sizes around a sample, along each axis, within which its size is wished too */
 enum {
   LEVELS_MAX = 18, /* three coordinates must fit a key of 64 bits */
   NODES_MAX = 1 << 28,
@@ -173,19 +174,31 @@ static bool split_and_sound(const laves__frame *frame, laves__octree *tree, int3
   return true;
 }
 
+/* Halves the leaf at a place until it fits the size; false when memory is short. */
+static bool refine_at(const laves__frame *frame, laves__octree *tree, laves__vec3 place, double size) {
+  const laves__vec3 p = v3_scale(v3_sub(place, tree->lower), 1 / tree->unit);
+  const int32_t at[3] = {(int32_t)floor(p.x), (int32_t)floor(p.y), (int32_t)floor(p.z)};
+  int32_t leaf = laves__octree_locate(tree, at[0], at[1], at[2]);
+  if (leaf < 0) return true;
+  while (!tree->node[leaf].outside && is_too_large(tree, &tree->node[leaf], size)) {
+    if (!split_and_sound(frame, tree, leaf)) return false;
+    leaf = laves__octree_locate(tree, at[0], at[1], at[2]);
+  }
+  tree->node[leaf].size = fminf(tree->node[leaf].size, (float)size);
+  return true;
+}
+
+/* Samples stand on the surface, which may run close beside a face of leaves; those beyond take part in the boundary as well. */
 static laves_result refine_by_samples(const laves__frame *frame, const laves__demand *demand, laves__octree *tree,
                                       laves_error *error) {
   for (size_t i = 0; i < demand->sample_count; i++) {
-    const laves__vec3 p = v3_scale(v3_sub(demand->sample[i], tree->lower), 1 / tree->unit);
-    const double size = fmin(fmax(demand->sample_size[i], demand->smallest), demand->largest);
-    const int32_t at[3] = {(int32_t)floor(p.x), (int32_t)floor(p.y), (int32_t)floor(p.z)};
-    int32_t leaf = laves__octree_locate(tree, at[0], at[1], at[2]);
-    if (leaf < 0) continue;
-    while (!tree->node[leaf].outside && is_too_large(tree, &tree->node[leaf], size)) {
-      if (!split_and_sound(frame, tree, leaf)) return laves__fail_memory(tree->context, error);
-      leaf = laves__octree_locate(tree, at[0], at[1], at[2]);
-    }
-    tree->node[leaf].size = fminf(tree->node[leaf].size, (float)size);
+    const laves__vec3 p = demand->sample[i];
+    const double size = fmin(fmax(demand->sample_size[i], demand->smallest), demand->largest), reach = sample_reach * size;
+    bool memory = refine_at(frame, tree, p, size);
+    for (int k = 0; memory && k < 8; k++)
+      memory = refine_at(
+          frame, tree, v3(p.x + (k & 1 ? reach : -reach), p.y + (k & 2 ? reach : -reach), p.z + (k & 4 ? reach : -reach)), size);
+    if (!memory) return laves__fail_memory(tree->context, error);
     if (tree->node_count > NODES_MAX) return too_many(error);
   }
   return LAVES_OK;
