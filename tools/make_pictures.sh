@@ -56,7 +56,7 @@ sized size-refine "$bracket" demo/bracket.obj --size 0.1 --refine tag:step=0.02,
   --refine "curve:$meshes/weld.txt=0.015"
 sized size-curvature '--view -50,35 --size 400x300 --color size' demo/socket.lua --size 10 --curvature-elements 12
 sized size-distance '--view -60,20 --size 400x280 --color size' 'smooth_union(sphere(1), sphere(0.3):move(1.2, 0, 0), 0.2)' \
-  --size 0.4 --max-distance 0.01
+  --size 0.3 --max-distance 0.018
 sized size-thickness "$bracket" demo/bracket.obj --size 0.2 --thickness-elements 2
 sized size-features "$bracket" demo/bracket.obj --size 0.1 --feature-elements 2
 sized size-growth '--cut y --view -80,12 --size 400x300 --color size' \
