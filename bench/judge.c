@@ -7,19 +7,22 @@
  * --size: an expression of x, y and z, the wished edge length; adds the lengths of edges over the wish at their midpoints, at 1,
  * 5, 50, 95 and 99 %, and the share of edges within 0.6 and 1.5, of all edges and of those of the interior. Each edge counts
  * once.
- * --surface: what the mesh should fill; adds the distances both ways, in units of the input. */
+ * --surface: what the mesh should fill; adds the distances both ways, in units of the input, and how many tetrahedra outside the
+ * window stand where the surface is smooth. */
 #include <laves/laves.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-enum { RATIO_BINS = 20, EXPRESSION_BYTES = 4096, CHUNK = 4096 };
+enum { RATIO_BINS = 20, EXPRESSION_BYTES = 4096, CHUNK = 4096, PLACES_MAX = 100000 };
 
 static const double pi = 3.14159265358979323846;
 /* What every tetrahedron of a graded interior shall keep. */
 static const double window_min = 35, window_max = 132;
+static const double smooth_radius = 2;
 /* Between these, edges are as long as was wished; and where the lengths are read off. */
 static const double fit_min = 0.6, fit_max = 1.5;
 static const double levels[] = {0.01, 0.05, 0.5, 0.95, 0.99};
@@ -160,6 +163,26 @@ static laves_result judge_mesh(laves_context *context, const laves_mesh *mesh, c
   return result;
 }
 
+/* Tets outside the window where the surface is smooth: its radius of curvature is at least smooth_radius mean edges of the tet.
+ */
+static laves_result judge_smooth(laves_context *context, const laves_mesh *mesh, const laves_domain *domain, laves_error *error) {
+  size_t count = 0, smooth = 0;
+  laves_place *places = malloc(PLACES_MAX * sizeof *places);
+  if (!places) return LAVES_ERROR_MEMORY;
+  const laves_result result =
+      laves_check_window(context, mesh, domain, window_min, window_max, 0, places, PLACES_MAX, &count, error);
+  for (size_t i = 0; result == LAVES_OK && i < count && i < PLACES_MAX; i++) {
+    const int32_t *tet = laves_mesh_tets(mesh) + 4 * (size_t)places[i].tet;
+    double length = 0;
+    for (int a = 0; a < 4; a++)
+      for (int b = a + 1; b < 4; b++) length += norm(minus(point(mesh, tet[a]), point(mesh, tet[b]))) / 6;
+    smooth += places[i].curvature_radius >= smooth_radius * length;
+  }
+  print_field("outside_smooth", (double)smooth);
+  free(places);
+  return result;
+}
+
 /* ---- sizes ---- */
 
 static int by_ends(const void *left, const void *right) {
@@ -264,15 +287,17 @@ static laves_result judge(const request *q, laves_context *context, laves_error 
   laves_domain *domain = NULL;
   bool *boundary = NULL;
   laves_result result = laves_mesh_read(context, q->mesh, &mesh, error);
-  if (result == LAVES_OK && q->surface) result = laves_domain_from_file(context, q->surface, &domain, error);
-  if (result == LAVES_ERROR_INPUT && mesh) result = laves_domain_from_expression(context, q->surface, &domain, error);
+  if (result == LAVES_OK && q->surface)
+    result = access(q->surface, F_OK) == 0 ? laves_domain_from_file(context, q->surface, &domain, error)
+                                           : laves_domain_from_expression(context, q->surface, &domain, error);
   if (result == LAVES_OK) result = judge_mesh(context, mesh, domain, error);
   if (result != LAVES_OK) goto end;
   result = LAVES_ERROR_MEMORY;
   if (!(boundary = calloc(laves_mesh_vertex_count(mesh) + 1, sizeof *boundary))) goto end;
   for (size_t i = 0; i < 3 * laves_mesh_face_count(mesh); i++) boundary[laves_mesh_faces(mesh)[i]] = true;
   judge_shapes(mesh, boundary);
-  result = q->size ? judge_sizes(context, mesh, boundary, q->size, error) : LAVES_OK;
+  result = domain ? judge_smooth(context, mesh, domain, error) : LAVES_OK;
+  if (result == LAVES_OK && q->size) result = judge_sizes(context, mesh, boundary, q->size, error);
   printf("}\n");
 end:
   free(boundary);
