@@ -37,6 +37,7 @@ typedef struct run {
   laves__stuff_counts stuffed;
   const laves__guarantee *guarantee; /* NULL: nothing is promised */
   double counted, kept;              /* tets or vertices before improvement, whichever are asked for; their share after it */
+  bool recounted;                    /* once is enough */
   int round;                         /* of refinement for the sake of the distance */
   size_t distant;                    /* places still further away than asked */
   bool rough;                        /* the solid is rougher than the size */
@@ -99,6 +100,9 @@ static laves_result choose_sizes(run *r) {
     r->frame.size = laves__size_ceiling(r->sizes);
     laves__size_free(r->sizes);
     r->sizes = NULL;
+  } else if (result == LAVES_OK && r->options->method == LAVES_METHOD_STUFF) {
+    result = laves__fail(r->error, LAVES_ERROR_OPTION,
+                         "stuffing needs one size everywhere, but sizes that vary were asked for; leave one of the two away");
   } else if (result == LAVES_OK) {
     r->guarantee = NULL; /* what is proved is proved for one size */
     result = laves__wishes_make(r->context, r->sizes, base, &r->wishes, r->error);
@@ -108,9 +112,6 @@ static laves_result choose_sizes(run *r) {
     }
   }
   if (r->sizes) end_stage(r, "sizes");
-  if (result == LAVES_OK && r->sizes && r->options->method == LAVES_METHOD_STUFF)
-    return laves__fail(r->error, LAVES_ERROR_OPTION,
-                       "stuffing needs one size everywhere, but sizes that vary were asked for; leave one of the two away");
   return result;
 }
 
@@ -342,8 +343,9 @@ static laves_result count_again(run *r, laves_mesh **mesh, bool *again) {
   const laves_options *o = r->options;
   const double wished = o->tet_target ? (double)o->tet_target : (double)o->vertex_target;
   const double got = o->tet_target ? (double)(*mesh)->tet_count : (double)(*mesh)->vertex_count;
-  *again = r->sizes && has_target(o) && r->kept == 1 && fabs(got / wished - 1) > tolerance;
+  *again = r->sizes && has_target(o) && !r->recounted && fabs(got / wished - 1) > tolerance;
   if (!*again) return LAVES_OK;
+  r->recounted = true;
   r->kept = got / r->counted;
   laves_mesh_free(*mesh);
   *mesh = NULL;
