@@ -18,7 +18,7 @@ typedef struct laves__wishes {
   size_t place_count;
 } laves__wishes;
 
-/* Asks the surface for its samples. LAVES_ERROR_INPUT, LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
+/* Asks the surface for its samples. LAVES_ERROR_OPTION when they are too many, LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
 laves_result laves__wishes_make(laves_context *context, const laves__size *size, double base, laves__wishes *wishes,
                                 laves_error *error);
 /* One more wish; false when memory is short. */

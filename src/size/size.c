@@ -179,7 +179,12 @@ static laves_result set_limits(laves__size *s, const laves_options *options, dou
   s->grading = options->grading;
   s->growth = fmin(options->interior_growth, options->grading);
   s->ceiling = s->base;
-  if (s->growth > 0) s->ceiling = options->max_size > 0 ? options->max_size : standard_growth_end * s->base;
+  if (s->growth > 0 && options->max_size > 0) {
+    const double deepest = 0.5 * box3_diagonal(s->oracle->bounds);
+    s->ceiling = fmin(options->max_size, s->base + s->growth * deepest);
+  } else if (s->growth > 0) {
+    s->ceiling = standard_growth_end * s->base;
+  }
   return LAVES_OK;
 }
 

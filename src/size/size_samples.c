@@ -20,7 +20,12 @@ static const double crease_scale = 3;
  * 1.33 of its thickness on. */
 static const double across_factor = 1.2;
 static const double two_pi = 6.283185307179586;
-enum { PATCH_BATCH = 64 };
+enum {
+  PATCH_BATCH = 64,
+  PATCHES_MAX = 1 << 25, /* of one round: there would be as many boundary faces, and many times as many tets */
+};
+/* Floors in the diagonal of the domain, at most: the octree has no more levels. */
+static const double finest_floor = 1 << 18;
 
 typedef struct sampling {
   const laves__size *size;
@@ -111,6 +116,9 @@ static laves_result part_patches(sampling *a, laves_error *error) {
     a->starts[i] = total;
     total += a->parts[i];
   }
+  if (total > PATCHES_MAX)
+    return laves__fail(error, LAVES_ERROR_OPTION,
+                       "the surface asks for sizes at more than %d places; choose a larger smallest size", PATCHES_MAX);
   a->next = laves__alloc(context, total, sizeof *a->next);
   if (!a->next && total > 0) return laves__fail_memory(context, error);
   if (!laves__parallel_for(context, "size", a->count, PATCH_BATCH, part_range, a)) {
@@ -219,8 +227,13 @@ static laves_result sample_patches(sampling *a, laves_error *error) {
 laves_result laves__size_samples(const laves__size *size, laves__size_sample **samples, size_t *count, laves_error *error) {
   sampling a = {.size = size};
   laves_result result = LAVES_OK;
+  const double diagonal = box3_diagonal(size->oracle->bounds);
   *samples = NULL;
   *count = 0;
+  if (diagonal > finest_floor * size->floor)
+    return laves__fail(error, LAVES_ERROR_OPTION,
+                       "sizes from %g on are too small for a solid that is %g wide; choose a larger smallest size", size->floor,
+                       diagonal);
   if (size->curvature_elements > 0 || size->max_distance > 0 || size->thickness_elements > 0) result = sample_patches(&a, error);
   if (result == LAVES_OK && size->feature_elements > 0)
     result = laves__feature_samples(size, &a.samples, &a.sample_count, &a.sample_capacity, error);

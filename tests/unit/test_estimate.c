@@ -82,6 +82,34 @@ static void targets_are_met(void **state) {
   drop(&m);
 }
 
+/* A count that no size meets is tried for a while, not for ever. */
+static void hopeless_counts_come_to_an_end(void **state) {
+  (void)state;
+  made m = of_expression("sphere(1)");
+  laves_mesh *mesh;
+  m.options.tet_target = 30;
+  m.options.interior_growth = 0.3;
+  assert_int_equal(laves_generate(m.context, m.domain, &m.options, &mesh, NULL, NULL), LAVES_TARGET_MISSED);
+  laves_mesh_free(mesh);
+  drop(&m);
+}
+
+static void sizes_without_measure(void **state) {
+  (void)state;
+  made m = of_expression("sphere(1)");
+  laves_expectation expected;
+  laves_error error;
+  m.options.size = 0.1;
+  m.options.interior_growth = 0.3;
+  m.options.max_size = 1e300;
+  assert_int_equal(laves_estimate(m.context, m.domain, &m.options, &expected, NULL), LAVES_OK);
+  m.options.min_size = 1e-300;
+  m.options.curvature_elements = 1000;
+  assert_int_equal(laves_estimate(m.context, m.domain, &m.options, &expected, &error), LAVES_ERROR_OPTION);
+  assert_non_null(strstr(error.text, "sizes from 1e-300 on are too small"));
+  drop(&m);
+}
+
 static void mistakes_are_told(void **state) {
   (void)state;
   made m = of_expression("sphere(1)");
@@ -98,8 +126,13 @@ static void mistakes_are_told(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(uniform),         cmocka_unit_test(growing_inside),    cmocka_unit_test(by_expression),
-      cmocka_unit_test(targets_are_met), cmocka_unit_test(mistakes_are_told),
+      cmocka_unit_test(uniform),
+      cmocka_unit_test(growing_inside),
+      cmocka_unit_test(by_expression),
+      cmocka_unit_test(targets_are_met),
+      cmocka_unit_test(mistakes_are_told),
+      cmocka_unit_test(hopeless_counts_come_to_an_end),
+      cmocka_unit_test(sizes_without_measure),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
