@@ -73,7 +73,7 @@ static laves_result make_root(const laves__frame *frame, const laves__demand *de
   const double margin = (0.5 + widening) * roundness * demand->largest; /* room for the largest leaves around the solid */
   int above = 1, below = 0;
   double half = whole_side; /* of the root: a power of two of whole periods, so that all lattices start at its corner */
-  while (above < LEVELS_MAX && half < fmax(far.x, fmax(far.y, far.z)) + margin) {
+  while (above <= LEVELS_MAX && half < fmax(far.x, fmax(far.y, far.z)) + margin) {
     half *= 2;
     above++;
   }
@@ -200,6 +200,7 @@ static laves_result refine_by_samples(const laves__frame *frame, const laves__de
           frame, tree, v3(p.x + (k & 1 ? reach : -reach), p.y + (k & 2 ? reach : -reach), p.z + (k & 4 ? reach : -reach)), size);
     if (!memory) return laves__fail_memory(tree->context, error);
     if (tree->node_count > NODES_MAX) return too_many(error);
+    if (i % 256 == 0 && laves__cancelled(tree->context, "background", 0)) return laves__fail_cancelled(error);
   }
   return LAVES_OK;
 }

@@ -17,7 +17,10 @@
 
 #include <string.h>
 
-enum { TETS_MAX = 96 }; /* that one leaf owns */
+enum {
+  TETS_MAX = 96,                  /* that one leaf owns */
+  GRAPH_TETS_MAX = (1 << 30) - 1, /* their corners are counted in 32 bits */
+};
 
 typedef struct filling {
   const laves__octree *tree;
@@ -305,8 +308,9 @@ static laves_result make_tets(filling *f, laves_error *error) {
     total += count;
     f->first[i + 1] = count;
   }
-  if (total > INT32_MAX)
-    return laves__fail(error, LAVES_ERROR_OPTION, "the sizes ask for %zu tetrahedra, more than 2^31; choose larger ones", total);
+  if (total > GRAPH_TETS_MAX)
+    return laves__fail(error, LAVES_ERROR_OPTION, "the sizes ask for %zu tetrahedra, more than %d; choose larger ones", total,
+                       GRAPH_TETS_MAX);
   g->tet_count = total;
   g->tet = laves__alloc(context, total, sizeof *g->tet);
   g->tile = laves__alloc(context, total, 1);
