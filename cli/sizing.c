@@ -13,9 +13,10 @@
 #include <string.h>
 #include <sys/stat.h>
 
+/* Devices are none: some never end. */
 static bool is_file(const char *path) {
   struct stat status;
-  return stat(path, &status) == 0 && !S_ISDIR(status.st_mode);
+  return stat(path, &status) == 0 && !S_ISDIR(status.st_mode) && !S_ISCHR(status.st_mode);
 }
 
 static bool ends_with(const char *text, const char *ending) {
