@@ -356,7 +356,7 @@ static laves_result count_again(run *r, laves_mesh **mesh, bool *again) {
  * square of the size; then all is made again. *again: it must be. */
 static laves_result refine_where_distant(run *r, laves_mesh **mesh, bool *again) {
   enum { ROUNDS = 5, PLACES = 4096 };
-  static const double least_factor = 0.5, most_factor = 0.85;
+  static const double least_factor = 0.5;
   const double wished = r->options->max_distance;
   *again = false;
   r->distant = 0;
@@ -368,10 +368,11 @@ static laves_result refine_where_distant(run *r, laves_mesh **mesh, bool *again)
   const double floor = laves__size_floor(r->sizes);
   for (size_t i = 0; result == LAVES_OK && r->round < ROUNDS && i < r->distant && i < PLACES; i++) {
     const laves__vec3 local = v3_sub(v3(place[i].place[0], place[i].place[1], place[i].place[2]), r->frame.oracle->origin);
-    const double now = laves__octree_size(&r->tree, laves__frame_from_local(&r->frame, local)) * r->wishes.base;
-    const double factor = fmin(fmax(sqrt(wished / place[i].value), least_factor), most_factor);
+    double halving = 0;
+    const double now = laves__octree_size(&r->tree, laves__frame_from_local(&r->frame, local), &halving) * r->wishes.base;
+    const double wish = fmin(now * fmax(sqrt(wished / place[i].value), least_factor), halving * r->wishes.base);
     if (now <= floor) continue;
-    if (!laves__wishes_add(&r->wishes, local, now * factor)) result = laves__fail_memory(r->context, r->error);
+    if (!laves__wishes_add(&r->wishes, local, wish)) result = laves__fail_memory(r->context, r->error);
     *again = true;
   }
   end_stage(r, "distance");

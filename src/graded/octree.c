@@ -3,7 +3,7 @@
  * large or more than twice as large as a neighbour; see which leaves are among their like.
  *
  * A cube is halved while its side is more than `roundness` times the wished size. A plateau of C15 has a mean edge of 0.80
- * sides, so edges lie between 0.72 and 1.43 of what is wished, and a uniform wish is met exactly. */
+ * sides, so edges lie between 0.72 and 1.43 of the least wish, and a uniform wish is met exactly. */
 #include "graded/octree.h"
 
 #include "background/c15_table.h"
@@ -11,6 +11,8 @@
 #include <string.h>
 
 static const double roundness = 1.8;
+/* The same where the wish is a sample's, which is just what it says and not the least of several. */
+static const double sample_roundness = 1.65;
 /* Sizes between the corners of a leaf of the asked size: half a period. */
 static const double whole_side = LAVES__C15_PERIOD / 2 / LAVES__C15_MEAN_EDGE;
 static const double widening = 1.5;     /* sides around a leaf within which nothing of the solid may lie for it to be outside */
@@ -37,11 +39,12 @@ int32_t laves__octree_locate(const laves__octree *tree, int32_t x, int32_t y, in
   return index;
 }
 
-double laves__octree_size(const laves__octree *tree, laves__vec3 point) {
+double laves__octree_size(const laves__octree *tree, laves__vec3 point, double *halving) {
   const laves__vec3 p = v3_scale(v3_sub(point, tree->lower), 1 / tree->unit);
   const double side = tree->node->side;
   if (!(p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < side && p.y < side && p.z < side)) return 0;
   const laves__node *n = &tree->node[laves__octree_locate(tree, (int32_t)p.x, (int32_t)p.y, (int32_t)p.z)];
+  *halving = n->side * tree->unit / sample_roundness * (1 - 1e-6);
   return n->outside ? 0 : (double)n->size;
 }
 
@@ -63,8 +66,8 @@ static bool split(laves__octree *tree, int32_t index) {
   return true;
 }
 
-static bool is_too_large(const laves__octree *tree, const laves__node *n, double size) {
-  return n->side > 4 && n->side * tree->unit > roundness * size;
+static bool is_too_large(const laves__octree *tree, const laves__node *n, double longest) {
+  return n->side > 4 && n->side * tree->unit > longest;
 }
 
 static laves_result make_root(const laves__frame *frame, const laves__demand *demand, laves__octree *tree, laves_error *error) {
@@ -77,7 +80,7 @@ static laves_result make_root(const laves__frame *frame, const laves__demand *de
     half *= 2;
     above++;
   }
-  for (double side = whole_side; below <= LEVELS_MAX && side > roundness * demand->smallest; side /= 2) below++;
+  for (double side = whole_side; below <= LEVELS_MAX && side > sample_roundness * demand->smallest; side /= 2) below++;
   if (above + below > LEVELS_MAX)
     return laves__fail(error, LAVES_ERROR_OPTION,
                        "sizes from %g on are too small for a solid that is %g wide; choose a larger smallest size",
@@ -101,15 +104,16 @@ typedef struct sounding {
   int level;
 } sounding;
 
-static double least_of(const laves__demand *demand, size_t count, const laves__vec3 *at) {
+/* The least of the wishes at places in a cube: small sizes hold. */
+static double least_wish(const laves__demand *demand, size_t count, const laves__vec3 *at) {
   double sizes[DENSE_SPREAD * DENSE_SPREAD * DENSE_SPREAD], least = HUGE_VAL;
   demand->evaluate(demand->self, count, at, sizes);
   for (size_t i = 0; i < count; i++) least = fmin(least, sizes[i]);
   return fmin(fmax(least, demand->smallest), demand->largest);
 }
 
-/* The least wish at the centre and at eight places around it; for the first levels at many more. */
-static double least_wish(const sounding *s, const laves__node *n) {
+/* From the wishes at the centre and at eight places around it; for the first levels at many more. */
+static double wish_of_cube(const sounding *s, const laves__node *n) {
   laves__vec3 at[DENSE_SPREAD * DENSE_SPREAD * DENSE_SPREAD];
   const laves__vec3 c = centre_of(s->tree, n);
   const double side = n->side * s->tree->unit, reach = 0.3 * side, step = side / DENSE_SPREAD;
@@ -125,7 +129,7 @@ static double least_wish(const sounding *s, const laves__node *n) {
           at[count++] =
               v3(c.x + (x - DENSE_SPREAD / 2) * step, c.y + (y - DENSE_SPREAD / 2) * step, c.z + (z - DENSE_SPREAD / 2) * step);
   }
-  return least_of(s->demand, count, at);
+  return least_wish(s->demand, count, at);
 }
 
 static bool is_outside(const laves__frame *frame, const laves__octree *tree, const laves__node *n) {
@@ -138,7 +142,7 @@ static void sound(void *user, size_t begin, size_t end, int worker) {
   for (size_t i = s->first + begin; i < s->first + end; i++) {
     laves__node *n = &s->tree->node[i];
     n->outside = is_outside(s->frame, s->tree, n);
-    if (!n->outside) n->size = (float)least_wish(s, n);
+    if (!n->outside) n->size = (float)wish_of_cube(s, n);
   }
 }
 
@@ -152,7 +156,7 @@ static laves_result refine_by_field(const laves__frame *frame, const laves__dema
   for (size_t end = tree->node_count; s.first < end; s.level++) {
     if (!laves__parallel_for(tree->context, "background", end - s.first, 16, sound, &s)) return laves__fail_cancelled(error);
     for (size_t i = s.first; i < end; i++) {
-      if (tree->node[i].outside || !is_too_large(tree, &tree->node[i], tree->node[i].size)) continue;
+      if (tree->node[i].outside || !is_too_large(tree, &tree->node[i], roundness * tree->node[i].size)) continue;
       if (!split(tree, (int32_t)i)) return laves__fail_memory(tree->context, error);
       if (tree->node_count > NODES_MAX) return too_many(error);
     }
@@ -180,7 +184,7 @@ static bool refine_at(const laves__frame *frame, laves__octree *tree, laves__vec
   const int32_t at[3] = {(int32_t)floor(p.x), (int32_t)floor(p.y), (int32_t)floor(p.z)};
   int32_t leaf = laves__octree_locate(tree, at[0], at[1], at[2]);
   if (leaf < 0) return true;
-  while (!tree->node[leaf].outside && is_too_large(tree, &tree->node[leaf], size)) {
+  while (!tree->node[leaf].outside && is_too_large(tree, &tree->node[leaf], sample_roundness * size)) {
     if (!split_and_sound(frame, tree, leaf)) return false;
     leaf = laves__octree_locate(tree, at[0], at[1], at[2]);
   }
@@ -298,7 +302,8 @@ static bool carry(front *f, int32_t leaf, const int8_t place[3], int8_t (*probe)
     if (to < 0 || tree->node[to].outside) return true;
     const float allowed = size_at(f, leaf, to);
     const bool steep = tree->node[to].size > allowed;
-    if (tree->node[to].side <= 2 * tree->node[leaf].side && !(steep && is_too_large(tree, &tree->node[to], allowed))) {
+    if (tree->node[to].side <= 2 * tree->node[leaf].side &&
+        !(steep && is_too_large(tree, &tree->node[to], roundness * allowed))) {
       if (!steep) return true;
       tree->node[to].size = allowed;
       return push(f, to);

@@ -51,8 +51,9 @@ void laves__octree_free(laves__octree *tree);
 /* The leaf that holds a point (its lower faces belong to it), or -1 beyond the root. */
 int32_t laves__octree_locate(const laves__octree *tree, int32_t x, int32_t y, int32_t z);
 
-/* The wished size at a point of the lattice, in sizes; 0 where nothing of the solid is near. */
-double laves__octree_size(const laves__octree *tree, laves__vec3 point);
+/* The wished size at a point of the lattice, in sizes; 0 where nothing of the solid is near. *halving: the largest wish for
+ * which the leaf there would be halved. */
+double laves__octree_size(const laves__octree *tree, laves__vec3 point, double *halving);
 
 static inline laves__vec3 laves__octree_point(const laves__octree *tree, double x, double y, double z) {
   return v3(tree->lower.x + x * tree->unit, tree->lower.y + y * tree->unit, tree->lower.z + z * tree->unit);

@@ -39,7 +39,7 @@ static const double block_side = 15;        /* local sizes; see above */
 static const double worthwhile = 0.02;      /* share of bad tets that a pass must cure to be followed by its like */
 static const double thorough_below = 0.985; /* quality below which the few that remain get more patience */
 static const double far_outside = 0.75;     /* quality: about 36 to 131 degrees for the standard window */
-static const double graded_rough = 0.1;      /* share of the layer that is so after flips where the solid is noise */
+static const double graded_crowd = 0.1;     /* what `crowd` is on a graded background, after flips */
 static const double peel_below = 0.5;       /* quality below which a tet between two surfaces is taken away, if it can be */
 static const double settle_floor = 0.2;     /* quality that bringing a vertex back to the surface may cost: about 18 degrees */
 
@@ -316,10 +316,10 @@ static laves_result mend_tiling(work *w, bool brief, laves_error *error) {
 static laves_result mend_graded(work *w, laves_error *error) {
   laves_result result = run_passes(w, FLIP_PASSES, 2, error);
   if (result == LAVES_OK) settle_all(w);
-  const bool crowded = is_crowded(w, crowd);
+  const bool crowded = is_crowded(w, graded_crowd);
   w->rounds = 1;
   w->admit = far_outside;
-  const bool rough = is_crowded(w, graded_rough);
+  const bool rough = is_crowded(w, graded_crowd);
   if (result == LAVES_OK) result = run_passes(w, rough ? 1 : CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) peel_all(w);
   w->admit = 1;

@@ -16,9 +16,6 @@
 static const double sagitta_factor = 6;
 /* Floors down to which a jump of the normal is followed: a bend that asks for the floor is seen from there. */
 static const double crease_scale = 3;
-/* Elements asked for across a wall, to get one: edges may be 1.43 times as long as wished (octree.c), and a wall is lost from
- * 1.33 of its thickness on. */
-static const double across_factor = 1.2;
 static const double two_pi = 6.283185307179586;
 enum {
   PATCH_BATCH = 64,
@@ -59,7 +56,7 @@ static double ask(const sampling *a, const laves__patch *p, bool *unresolved) {
   if (s->curvature_elements > 0 || s->max_distance > 0)
     size = size_by_curvature(s, laves__curvature_at(&a->curvature, p, unresolved));
   if (s->thickness_elements > 0) {
-    const double n = across_factor * s->thickness_elements;
+    const double n = s->thickness_elements;
     size = fmin(size, laves__thickness_at(s, p, n * s->ceiling) / n);
   }
   return fmax(size, s->floor);

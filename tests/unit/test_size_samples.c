@@ -180,24 +180,21 @@ static void floor_holds(void **state) {
 
 /* ---- thickness ---- */
 
-/* How many more elements are asked for than are to be there, since edges may be longer than asked. */
-static const double across = 1.2;
-
 static void thickness_of_plates(void **state) {
   (void)state;
   laves_options options = laves_options_default();
   options.thickness_elements = 2;
   made m = of_shape(shape_box((double[3]){0, 0, 0}, (double[3]){2, 2, 0.1}, 2));
   ask(&m, &options, 0.3);
-  expect_all(&m, 0.05 / across * (1 - 1e-9), 0.05 / across * (1 + 1e-9), 8);
+  expect_all(&m, 0.05 * (1 - 1e-9), 0.05 * (1 + 1e-9), 8);
   drop(&m);
   m = of_expression("box(2, 2, 0.1)");
   ask(&m, &options, 0.3);
-  expect_all(&m, 0.05 / across * (1 - 1e-6), 0.05 / across * (1 + 1e-6), 8);
+  expect_all(&m, 0.05 * (1 - 1e-6), 0.05 * (1 + 1e-6), 8);
   drop(&m);
   m = of_expression("max(x^4 + y^4 - 1, 100*z*z - 0.25)"); /* phi is no distance; 0.1 thick */
   ask(&m, &options, 0.3);
-  assert_close(least_near(&m, 0, 0, 0, 0.2), 0.05 / across, 1e-6);
+  assert_close(least_near(&m, 0, 0, 0, 0.2), 0.05, 1e-6);
   drop(&m);
 }
 
@@ -211,12 +208,12 @@ static void thickness_of_gaps(void **state) {
   shape_free(&other);
   made m = of_shape(s);
   ask(&m, &options, 0.3);
-  expect_all(&m, 0.05 / across * (1 - 1e-9), 0.05 / across * (1 + 1e-9), 2);
+  expect_all(&m, 0.05 * (1 - 1e-9), 0.05 * (1 + 1e-9), 2);
   assert_true(isinf(least_near(&m, 0, 0.5, 0.5, 0.5)));
   drop(&m);
   m = of_expression("box(1, 1, 1) | box(1, 1, 1):move(1.05, 0, 0)");
   ask(&m, &options, 0.3);
-  assert_close(least_near(&m, 0.5, 0, 0, 0.3), 0.05 / across, 1e-6);
+  assert_close(least_near(&m, 0.5, 0, 0, 0.3), 0.05, 1e-6);
   drop(&m);
 }
 
@@ -231,8 +228,8 @@ static void hidden_walls_do_not_count(void **state) {
   shape_free(&thin);
   made m = of_shape(s);
   ask(&m, &options, 0.15);
-  expect_all(&m, 0.025 / across * (1 - 1e-9), 0.025 / across * (1 + 1e-9), 0);
-  assert_close(least_near(&m, -0.25, 0.5, 0.5, 0.2), 0.025 / across, 1e-9);
+  expect_all(&m, 0.025 * (1 - 1e-9), 0.025 * (1 + 1e-9), 0);
+  assert_close(least_near(&m, -0.25, 0.5, 0.5, 0.2), 0.025, 1e-9);
   assert_true(isinf(least_near(&m, 0.3, 0.5, 0.5, 0.25))); /* within the thick one */
   drop(&m);
 }
