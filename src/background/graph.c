@@ -47,6 +47,7 @@ laves_result laves__graph_link(laves__graph *g, laves_error *error) {
   g->flags = laves__alloc_zeroed(context, g->tet_count, 1);
   if (!g->star_first || !g->link_first || !g->star || !g->flags) return laves__fail_memory(context, error);
   fill_stars(g);
+  if (laves__cancelled(context, "background", 0)) return laves__fail_cancelled(error);
   for (size_t v = 0; v < g->vertex_count; v++) {
     int32_t around[3 * LAVES__STAR_LIMIT + 1];
     LAVES_ASSERT(g->star_first[v + 1] - g->star_first[v] <= LAVES__STAR_LIMIT);
@@ -55,6 +56,7 @@ laves_result laves__graph_link(laves__graph *g, laves_error *error) {
   }
   g->link = laves__alloc(context, links, sizeof *g->link);
   if (!g->link) return laves__fail_memory(context, error);
+  if (laves__cancelled(context, "background", 0)) return laves__fail_cancelled(error);
   for (size_t v = 0; v < g->vertex_count; v++) {
     int32_t around[3 * LAVES__STAR_LIMIT + 1];
     const uint32_t count = gather_link(g, v, around);

@@ -43,7 +43,7 @@ typedef struct laves__graph {
   uint8_t *flags;       /* [tet_count] laves__tet_flag, which records hold as bits for the tiling */
 } laves__graph;
 
-/* The lists; LAVES_ERROR_MEMORY. */
+/* The lists; LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
 laves_result laves__graph_link(laves__graph *graph, laves_error *error);
 void laves__graph_free(laves__graph *graph);
 

@@ -114,7 +114,9 @@ laves_result laves__sites_make(const laves__octree *tree, laves__sites *sites, l
   sites->site_count = sites->corner.count + tree->leaf_count;
   sites->gone = laves__alloc_zeroed(tree->context, sites->site_count, sizeof *sites->gone);
   if (!sites->gone) return laves__fail_memory(tree->context, error);
+  if (laves__cancelled(tree->context, "background", 0)) return laves__fail_cancelled(error);
   result = mark_candidates(sites, error);
+  if (result == LAVES_OK && laves__cancelled(tree->context, "background", 0)) result = laves__fail_cancelled(error);
   return result == LAVES_OK ? keep_lonely(sites, error) : result;
 }
 
