@@ -38,6 +38,14 @@ static uint32_t gather_link(const laves__graph *g, size_t v, int32_t *link) {
   return count;
 }
 
+/* Stars are masks of 64 bits; the octree's have at most 48 tets, so this is a broken promise and not the user's fault. */
+static laves_result star_too_large(uint32_t tets, laves_error *error) {
+  return laves__fail(
+      error, LAVES_ERROR_OPTION,
+      "a vertex of the background has %u tetrahedra, more than can be told apart, which should not happen; please report it",
+      tets);
+}
+
 laves_result laves__graph_link(laves__graph *g, laves_error *error) {
   laves_context *context = g->context;
   size_t links = 0;
@@ -50,8 +58,10 @@ laves_result laves__graph_link(laves__graph *g, laves_error *error) {
   if (laves__cancelled(context, "background", 0)) return laves__fail_cancelled(error);
   for (size_t v = 0; v < g->vertex_count; v++) {
     int32_t around[3 * LAVES__STAR_LIMIT + 1];
-    LAVES_ASSERT(g->star_first[v + 1] - g->star_first[v] <= LAVES__STAR_LIMIT);
-    links += gather_link(g, v, around);
+    const uint32_t tets = g->star_first[v + 1] - g->star_first[v];
+    const uint32_t count = tets <= LAVES__STAR_LIMIT ? gather_link(g, v, around) : 0;
+    if (tets > LAVES__STAR_LIMIT || count > LAVES__LINK_LIMIT) return star_too_large(tets, error);
+    links += count;
     g->link_first[v + 1] = (uint32_t)links;
   }
   g->link = laves__alloc(context, links, sizeof *g->link);

@@ -4,7 +4,8 @@
  * their coordinates; the bad tets of one block are worked on in turn, worst first, and all blocks of a colour at the same
  * time. What an operation reads and changes lies within about six sizes of its tet, and blocks of one colour are fifteen
  * apart, so they can't meet: the result is the same for any number of threads. Where sizes vary, so do blocks: tets whose
- * size is at most a power of two are worked on in blocks of that many times the side, the largest first.
+ * size is at most a power of two are worked on in blocks of that many times the side, the largest first. (From one leaf of
+ * the octree to the next the size at most doubles, and blocks are fifteen to thirty times what lies in them.)
  *
  * First passes only smooth; when that no longer helps, contraction joins in; the few that are still clearly outside are
  * treated once more with more smoothing around each contraction. On a graded background flips join in from the first. */
