@@ -36,7 +36,7 @@ INTERIORS = [
 # in sizes of that mesh, elements round a circle of the surface's curvature, and the growth inside.
 WHOLE = {
     "sphere": (0.94, None, 0.6), "ellipsoid": (0.98, None, 0.9), "torus": (0.93, None, 0.5), "hand_closed.obj": (1.0, None, 0.9),
-    "homer.obj": (1.1, 16.5, 1.0), "spot.obj": (1.0, None, 0.9), "rocker-arm.obj": (1.24, 15.4, 1.0),
+    "homer.obj": (1.0, None, 1.0), "spot.obj": (1.0, None, 0.9), "rocker-arm.obj": (1.0, None, 1.0),
     "fertility.off": (1.0, None, 1.0)}
 SAME = 1.05  # a distance is the same when it is at most so many times the uniform mesh's
 

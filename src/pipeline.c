@@ -233,10 +233,28 @@ static laves_result hardly_resolved(const run *r, double share) {
                      r->frame.size, share);
 }
 
+/* The next size to try for a count. Where sizes vary, counts jump as leaves are halved, all those of a sphere at once: later
+ * steps are shorter, so that sizes near by are tried, and the last goes back to the best so far. */
+typedef struct count_search {
+  int step, steps;
+  double best_size, best_factor;
+} count_search;
+
+static void correct_size(run *r, count_search *s, double factor) {
+  enum { WHOLE_STEPS = 4 };
+  if (s->step == 0 || fabs(log(factor)) < fabs(log(s->best_factor))) {
+    s->best_factor = factor;
+    s->best_size = r->frame.size;
+  }
+  if (r->sizes && s->step >= WHOLE_STEPS) factor = sqrt(factor);
+  r->frame.size = r->sizes && s->step == s->steps - 1 ? s->best_size : r->frame.size * factor;
+  s->step++;
+}
+
 /* Background to boundary; repeated with a corrected size when a count was asked for and missed. */
 static laves_result make_boundary(run *r) {
-  const int corrections = r->sizes ? 8 : 4; /* where sizes vary, counts follow less simply */
-  for (int correction = 0;; correction++) {
+  count_search search = {.steps = r->sizes ? 10 : 4};
+  for (;;) {
     laves_result result = make_background(r);
     if (result == LAVES_OK) result = classify(r);
     if (result == LAVES_OK) result = conform(r);
@@ -247,8 +265,8 @@ static laves_result make_boundary(run *r) {
     const double factor =
         laves__options_correction(r->options, (int64_t)((double)tets * r->kept), (int64_t)((double)vertices * r->kept));
     if (tets == 0) return nothing_resolved(r);
-    if (factor == 1 || correction == corrections) break;
-    r->frame.size *= factor;
+    if (factor == 1 || search.step == search.steps) break;
+    correct_size(r, &search, factor);
   }
   const double share = filled_share(r);
   return share < least_filled || share > most_filled ? hardly_resolved(r, share) : LAVES_OK;
