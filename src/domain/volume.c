@@ -4,6 +4,7 @@
  * with the R3 sequence of [roberts2018], a Kronecker sequence of low discrepancy, so the error falls nearly as 1/n and is
  * confined to a thin layer around the surface. Where phi is a distance, one value stands for a whole box. (Paper, section 4.2,
  * which samples the whole bounding box.) */
+#include "base/jacobi.h"
 #include "domain/frame.h"
 
 enum {
@@ -90,22 +91,12 @@ static void eigenvectors(double m[3][3], double axes[3][3]) {
   for (int sweep = 0; sweep < SWEEPS; sweep++)
     for (int p = 0; p < 2; p++)
       for (int q = p + 1; q < 3; q++) {
-        if (m[p][q] == 0) continue;
-        const double theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
-        const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
-        const double c = 1 / sqrt(t * t + 1), s = t * c;
+        double c, sine;
+        laves__jacobi_rotate(m, p, q, &c, &sine);
         for (int k = 0; k < 3; k++) {
-          const double a = m[k][p], b = m[k][q];
-          m[k][p] = c * a - s * b;
-          m[k][q] = s * a + c * b;
-        }
-        for (int k = 0; k < 3; k++) {
-          const double a = m[p][k], b = m[q][k];
-          m[p][k] = c * a - s * b;
-          m[q][k] = s * a + c * b;
           const double u = axes[k][p], v = axes[k][q];
-          axes[k][p] = c * u - s * v;
-          axes[k][q] = s * u + c * v;
+          axes[k][p] = c * u - sine * v;
+          axes[k][q] = sine * u + c * v;
         }
       }
 }

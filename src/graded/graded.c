@@ -81,9 +81,9 @@ laves_result laves__graded_estimate(const laves__frame *frame, const laves__dema
     result = laves__fail_cancelled(error);
   } else {
     for (size_t i = 0; i < tree.leaf_count; i++) {
-      const bool plateau = tree.node[tree.leaf[i]].even;
-      *tets += e.share[i] * (plateau ? c15_tets : bcc_tets);
-      *vertices += e.share[i] * (plateau ? c15_vertices : bcc_vertices);
+      const bool even = tree.node[tree.leaf[i]].even;
+      *tets += e.share[i] * (even ? c15_tets : bcc_tets);
+      *vertices += e.share[i] * (even ? c15_vertices : bcc_vertices);
     }
   }
   laves__free(context, e.share, tree.leaf_count, sizeof *e.share);

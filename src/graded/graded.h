@@ -9,7 +9,7 @@
  * the tiles of C15 and of BCC; halves and quarters of the latter and half pyramids, where sizes change; and what fills the
  * place of a site at a wall between the lattices. docs/graded.md tells them all.
  *
- * Departure from the study that went before: nothing is triangulated by distances, moved or flipped. */
+ * Nothing is triangulated by distances, moved or flipped; docs/decisions/008-graded-background.md tells what else there was. */
 #ifndef LAVES_GRADED_GRADED_H
 #define LAVES_GRADED_GRADED_H
 

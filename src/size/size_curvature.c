@@ -10,6 +10,7 @@
  * crease. */
 #include <string.h>
 
+#include "base/jacobi.h"
 #include "size/size_parts.h"
 
 /* How far from the middle of a piece normals are taken, in parts of its width: about 0.3 of the size that belongs to it. */
@@ -27,32 +28,15 @@ static void add_outer(tensor *to, laves__vec3 e, double weight) {
   for (int i = 0; i < 6; i++) to->t[i] += weight * products[i];
 }
 
-/* Turns one off-diagonal entry of a symmetric matrix to zero: the classical rotation of Jacobi. */
-static void rotate(double m[3][3], int p, int q) {
-  if (m[p][q] == 0) return;
-  const double theta = 0.5 * (m[q][q] - m[p][p]) / m[p][q];
-  const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(1 + theta * theta));
-  const double c = 1 / sqrt(1 + t * t), s = t * c;
-  for (int k = 0; k < 3; k++) {
-    const double a = m[k][p], b = m[k][q];
-    m[k][p] = c * a - s * b;
-    m[k][q] = s * a + c * b;
-  }
-  for (int k = 0; k < 3; k++) {
-    const double a = m[p][k], b = m[q][k];
-    m[p][k] = c * a - s * b;
-    m[q][k] = s * a + c * b;
-  }
-}
-
 static double largest_eigenvalue(const tensor *t) {
   enum { SWEEPS = 8 };
   const double *v = t->t;
   double m[3][3] = {{v[0], v[3], v[5]}, {v[3], v[1], v[4]}, {v[5], v[4], v[2]}};
   for (int i = 0; i < SWEEPS; i++) {
-    rotate(m, 0, 1);
-    rotate(m, 1, 2);
-    rotate(m, 0, 2);
+    double cosine, sine;
+    laves__jacobi_rotate(m, 0, 1, &cosine, &sine);
+    laves__jacobi_rotate(m, 1, 2, &cosine, &sine);
+    laves__jacobi_rotate(m, 0, 2, &cosine, &sine);
   }
   return fmax(fabs(m[0][0]), fmax(fabs(m[1][1]), fabs(m[2][2])));
 }
