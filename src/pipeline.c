@@ -173,39 +173,10 @@ static laves_result stuff_everything(run *r) {
  * alone stands for a small part makes a piece as large as an edge.) */
 static const double least_snapped = 0.5, least_filled = 0.25, most_filled = 2;
 
-static double volume_of(const laves__vec3 p[4]) { return v3_det(p[0], p[1], p[2], p[3]) / 6; }
-
-/* Volume of the tiles that are stamped as they are. */
-static double stamped_volume(const run *r, size_t layer_tets) {
-  static const double tile = LAVES__CELL_SIDE * LAVES__CELL_SIDE * LAVES__CELL_SIDE / LAVES__C15_TETS; /* mean volume */
-  double volume = 0;
-  if (!r->lattice.graph) {
-    int64_t vertices, tets;
-    laves__assemble_estimate(&r->lattice, &r->layer, &vertices, &tets);
-    return (double)(tets - (int64_t)layer_tets) * tile;
-  }
-  for (size_t t = 0; t < r->graph.tet_count; t++) {
-    if (!(r->graph.flags[t] & LAVES__TET_STAMPED)) continue;
-    laves__vec3 p[4];
-    for (int k = 0; k < 4; k++) p[k] = r->graph.position[r->graph.tet[t][k]];
-    volume += volume_of(p);
-  }
-  return volume;
-}
-
 /* Volume of the mesh as it is now, over that of the solid. */
 static double filled_share(const run *r) {
-  double layer = 0;
-  size_t layer_tets = 0;
-  for (size_t t = 0; t < r->layer.tet_count; t++) {
-    if (r->layer.tet[t][0] < 0) continue;
-    laves__vec3 p[4];
-    laves__layer_points(&r->layer, (int32_t)t, p);
-    layer += volume_of(p);
-    layer_tets++;
-  }
   const double size = r->frame.size;
-  return (stamped_volume(r, layer_tets) + layer) * size * size * size / r->report->volume;
+  return laves__assemble_volume(&r->lattice, &r->layer) * size * size * size / r->report->volume;
 }
 
 /* Whether stuffing may take the place of snapping. */
@@ -370,11 +341,10 @@ static laves_result count_again(run *r, laves_mesh **mesh, bool *again) {
   return LAVES_OK;
 }
 
-/* Where the boundary is further from the surface than asked, smaller sizes are wished, as far as the distance falls with the
- * square of the size; then all is made again. *again: it must be. */
+/* Where the boundary is further from the surface than asked, smaller sizes are wished; then all is made again. *again: it must
+ * be. */
 static laves_result refine_where_distant(run *r, laves_mesh **mesh, bool *again) {
   enum { ROUNDS = 5, PLACES = 4096 };
-  static const double least_factor = 0.5;
   const double wished = r->options->max_distance;
   *again = false;
   r->distant = 0;
@@ -383,19 +353,11 @@ static laves_result refine_where_distant(run *r, laves_mesh **mesh, bool *again)
   if (!place) return laves__fail_memory(r->context, r->error);
   begin_stage(r);
   laves_result result = laves_check_distance(r->context, *mesh, r->domain, wished, place, PLACES, &r->distant, r->error);
-  const double floor = laves__size_floor(r->sizes);
-  for (size_t i = 0; result == LAVES_OK && r->round < ROUNDS && i < r->distant && i < PLACES; i++) {
-    const laves__vec3 local = v3_sub(v3(place[i].place[0], place[i].place[1], place[i].place[2]), r->frame.oracle->origin);
-    double halving = 0;
-    const double now = laves__octree_size(&r->tree, laves__frame_from_local(&r->frame, local), &halving) * r->wishes.base;
-    const double wish = fmin(now * fmax(sqrt(wished / place[i].value), least_factor), halving * r->wishes.base);
-    if (now <= floor) continue;
-    if (!laves__wishes_add(&r->wishes, local, wish)) result = laves__fail_memory(r->context, r->error);
-    *again = true;
-  }
+  const size_t known = r->distant < PLACES ? r->distant : PLACES;
+  if (result == LAVES_OK && r->round++ < ROUNDS && !laves__wishes_approach(&r->wishes, &r->tree, wished, place, known, again))
+    result = laves__fail_memory(r->context, r->error);
   end_stage(r, "distance");
   laves__free(r->context, place, PLACES, sizeof *place);
-  r->round++;
   if (*again && result == LAVES_OK) {
     laves_mesh_free(*mesh);
     *mesh = NULL;

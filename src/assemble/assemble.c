@@ -220,6 +220,23 @@ void laves__assemble_estimate(const laves__lattice *lattice, const laves__layer 
   for (size_t t = 0; t < layer->tet_count; t++) *tets += layer->tet[t][0] >= 0;
 }
 
+static double volume_of(const laves__vec3 p[4]) { return v3_det(p[0], p[1], p[2], p[3]) / 6; }
+
+double laves__assemble_volume(const laves__lattice *lattice, const laves__layer *layer) {
+  static const double tile = LAVES__CELL_SIDE * LAVES__CELL_SIDE * LAVES__CELL_SIDE / LAVES__C15_TETS; /* mean volume */
+  double volume = 0;
+  int64_t vertices, tiles;
+  laves__assemble_estimate(lattice, layer, &vertices, &tiles);
+  for (size_t t = 0; t < layer->tet_count; t++) {
+    if (layer->tet[t][0] < 0) continue;
+    laves__vec3 p[4];
+    laves__layer_points(layer, (int32_t)t, p);
+    volume += volume_of(p);
+    tiles--;
+  }
+  return (lattice->graph ? laves__assemble_graph_volume(lattice->graph) : (double)tiles * tile) + volume;
+}
+
 laves_result laves__assemble(const laves__frame *frame, laves__lattice *lattice, const laves__layer *layer, laves_mesh **mesh,
                              laves_error *error) {
   if (lattice->graph) return laves__assemble_graph(frame, lattice, layer, mesh, error);

@@ -9,6 +9,9 @@
 /* How many vertices and tets the mesh of a labelled lattice will have, before improvement. */
 void laves__assemble_estimate(const laves__lattice *lattice, const laves__layer *layer, int64_t *vertices, int64_t *tets);
 
+/* The volume of the mesh as it is now, in cubes of the size. */
+double laves__assemble_volume(const laves__lattice *lattice, const laves__layer *layer);
+
 /* Builds the mesh. Tets [0, lattice_tet_count) are exact tiles, stamped from the table in the order of the cells; those of
  * the layer follow. Vertices are in the order of the cells, too. Boundary faces carry the tags of the surface, where it has
  * any. Of a graded background, other tets that were not touched stand between the two, and the order is the graph's.

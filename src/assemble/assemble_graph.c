@@ -106,6 +106,16 @@ void laves__assemble_graph_estimate(const laves__lattice *lattice, const laves__
   for (size_t t = 0; t < layer->tet_count; t++) *tets += layer->tet[t][0] >= 0;
 }
 
+double laves__assemble_graph_volume(const laves__graph *graph) {
+  double volume = 0;
+  for (size_t t = 0; t < graph->tet_count; t++) {
+    if (!(graph->flags[t] & LAVES__TET_STAMPED)) continue;
+    const int32_t *v = graph->tet[t];
+    volume += v3_det(graph->position[v[0]], graph->position[v[1]], graph->position[v[2]], graph->position[v[3]]) / 6;
+  }
+  return volume;
+}
+
 laves_result laves__assemble_graph(const laves__frame *frame, const laves__lattice *lattice, const laves__layer *layer,
                                    laves_mesh **mesh, laves_error *error) {
   laves_context *context = lattice->context;

@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-/* Turns the entries (p, q) and (q, p) of a symmetric matrix to zero; the eigenvalues stay. The rotation's cosine and sine, 1 and 0
- * when there was nothing to turn, are for the caller's eigenvectors. */
+/* Turns the entries (p, q) and (q, p) of a symmetric matrix to zero; the eigenvalues stay. The rotation's cosine and sine, 1 and
+ * 0 when there was nothing to turn, are for the caller's eigenvectors. */
 static inline void laves__jacobi_rotate(double m[3][3], int p, int q, double *cosine, double *sine) {
   *cosine = 1;
   *sine = 0;

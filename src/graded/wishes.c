@@ -19,6 +19,23 @@ bool laves__wishes_add(laves__wishes *w, laves__vec3 local, double size) {
   return true;
 }
 
+bool laves__wishes_approach(laves__wishes *w, const laves__octree *tree, double distance, const laves_place *places, size_t count,
+                            bool *any) {
+  static const double least_factor = 0.5;
+  const double floor = laves__size_floor(w->size);
+  for (size_t i = 0; i < count; i++) {
+    const double *p = places[i].place;
+    const laves__vec3 local = v3_sub(v3(p[0], p[1], p[2]), w->frame->oracle->origin);
+    double halving = 0;
+    const double now = laves__octree_size(tree, laves__frame_from_local(w->frame, local), &halving) * w->base;
+    if (now <= floor) continue;
+    const double factor = fmax(sqrt(distance / places[i].value), least_factor);
+    if (!laves__wishes_add(w, local, fmin(now * factor, halving * w->base))) return false;
+    *any = true;
+  }
+  return true;
+}
+
 /* In units of the base a wish does not know of the stretching, so all sizes grow with the frame. */
 static void evaluate(const void *self, size_t count, const laves__vec3 *points, double *sizes) {
   const laves__wishes *w = self;

@@ -23,6 +23,11 @@ laves_result laves__wishes_make(laves_context *context, const laves__size *size,
                                 laves_error *error);
 /* One more wish; false when memory is short. */
 bool laves__wishes_add(laves__wishes *wishes, laves__vec3 local, double size);
+/* Smaller wishes at places where mesh and surface are further apart than `distance`: as far as that falls with the square of the
+ * size, and so small that the leaf there is halved. None where the size is the least already; *any: there was one. False
+ * when memory is short. The frame is that of the last demand. */
+bool laves__wishes_approach(laves__wishes *wishes, const laves__octree *tree, double distance, const laves_place *places,
+                            size_t count, bool *any);
 /* The demand in a frame, whose size may be a multiple of `base`: all wishes are stretched with it. Valid until the next call;
  * false when memory is short. */
 bool laves__wishes_demand(laves__wishes *wishes, const laves__frame *frame, laves__demand *demand);
