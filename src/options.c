@@ -24,6 +24,8 @@ laves_options laves_options_default(void) {
                          .max_dihedral = 125,
                          .volume_length = 0.6,
                          .grading = 0.3,
+                         .feature_angle = 40,
+                         .keep_thin = true,
                          .cookie = options_cookie};
 }
 
@@ -89,6 +91,7 @@ laves_result laves__options_check(const laves_options *o, laves_error *error) {
   if (result == LAVES_OK) result = check_range("max_dihedral", o->max_dihedral, 80, 180, error);
   if (result == LAVES_OK) result = check_range("volume_length", o->volume_length, 0, 0.8, error);
   if (result == LAVES_OK) result = check_sizing(o, error);
+  if (result == LAVES_OK) result = check_optional("feature_angle", o->feature_angle, 1, 179, error);
   if (result == LAVES_OK && (unsigned)o->align > LAVES_ALIGN_ROTATION)
     result = laves__fail(error, LAVES_ERROR_OPTION, "align is %d, which is no laves_align", (int)o->align);
   if (result == LAVES_OK && o->align == LAVES_ALIGN_ROTATION) result = check_rotation(o->rotation, error);

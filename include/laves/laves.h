@@ -1,6 +1,7 @@
 /* laves: near-regular tetrahedral meshes of any solid.  The public interface, in order of use:
  *
- *   version -> results and errors -> context -> domain -> sizing -> options -> generate -> mesh -> check -> certificate -> files
+ *   version -> results and errors -> context -> domain -> sizing -> features -> options -> generate -> mesh -> check ->
+ *   certificate -> files
  *
  * Conventions, everywhere: signed distance negative inside; tetrahedra positive, det[b-a, c-a, d-a] > 0; boundary
  * triangles face outwards; indices from 0; coordinates in the units of the input; angles in degrees.
@@ -254,6 +255,33 @@ LAVES_API laves_result laves_sizing_add_curve(laves_sizing *sizing, const double
 LAVES_API laves_result laves_sizing_add_tag(laves_sizing *sizing, const char *name, double size, double radius,
                                             laves_error *error);
 
+/* ---- features --------------------------------------------------------------------------------------------------- */
+
+/// Points and lines of the surface that the mesh shall contain, beside the sharp edges that are found by themselves: each point
+/// becomes a vertex at exactly that place, each line a chain of edges whose vertices lie on it. Belongs to a context; may be used
+/// for many domains, and by several threads once all is added. See laves_options.features and docs/features.md.
+typedef struct laves_features laves_features;
+
+/// @param features  out: empty; owned by the caller, free with laves_features_free(); NULL on failure
+LAVES_API laves_result laves_features_create(laves_context *context, laves_features **features, laves_error *error);
+LAVES_API void laves_features_free(laves_features *features);
+
+/// Adds points, in the units of the input, each of which becomes a vertex of the mesh at exactly that place.
+/// @param points  double[count][3], finite; copied. That one is off the surface by more than 1e-3 of the diagonal of the domain's
+///                box is an error (LAVES_ERROR_INPUT) when the mesh is made.
+LAVES_API laves_result laves_features_add_points(laves_features *features, const double *points, size_t count,
+                                                 laves_error *error);
+
+/// Adds a polyline: each point is joined to the next. Close it by repeating the first point. Its ends become vertices of the mesh
+/// at exactly their place (projected to the surface where they are off it by rounding); between them the mesh has vertices on it.
+/// @param points  double[count][3], finite, 2 or more; copied. As above where it is off the surface.
+LAVES_API laves_result laves_features_add_line(laves_features *features, const double *points, size_t count, laves_error *error);
+
+/// Adds the points and lines of a file: laves' own text, OBJ (p and l elements), Gmsh .msh 2.2 and 4.1 (point and line elements),
+/// legacy VTK and VTP text (vertices and lines). docs/feature-files.md tells the forms.
+/// @return LAVES_OK, LAVES_ERROR_INPUT (with the line or byte), LAVES_ERROR_MEMORY
+LAVES_API laves_result laves_features_add_file(laves_features *features, const char *path, laves_error *error);
+
 /* ---- options ---------------------------------------------------------------------------------------------------- */
 
 /// How the boundary is made. AUTO: by snapping (no tetrahedron is cut), and by stuffing (tetrahedra are warped and cut, with
@@ -292,7 +320,13 @@ typedef struct laves_options {
   double interior_growth;      ///< growth of the size per unit of depth below the surface, 0..1, beyond `size`, which is then
                                ///< the size at the surface; where it exceeds grading, grading holds. 0: none
   double max_size;             ///< where that growth ends, at least size; 0: 16 sizes. Without growth it has no effect.
-  uint32_t cookie;             ///< set by laves_options_default(), checked by laves_generate()
+  // Features that are kept (docs/features.md).
+  double feature_angle;  ///< edges of the surface where its normal turns by more, degrees, [1, 179], are kept as chains of
+                         ///< edges, and their ends as vertices; default 40; 0: none is looked for
+  bool feature_tags;     ///< edges between parts of the surface with different tags as well; default false
+  const laves_features *features;  ///< more points and lines; NULL: none. Must outlive the call.
+  bool keep_thin;                  ///< walls and gaps down to half the size keep their topology, or are named; default true
+  uint32_t cookie;                 ///< set by laves_options_default(), checked by laves_generate()
 } laves_options;
 
 LAVES_API laves_options laves_options_default(void);

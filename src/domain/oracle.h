@@ -20,6 +20,10 @@ typedef struct laves__projection {
   bool found;
 } laves__projection;
 
+struct laves__feature_wish;
+struct laves__features;
+struct laves__feature_lines;
+
 typedef struct laves__oracle {
   void *self;
   laves__vec3 origin; /* input coordinates of the local zero point */
@@ -61,6 +65,11 @@ typedef struct laves__oracle {
 
   /* Up to `capacity` thin places, thinnest first; NULL: not available. */
   size_t (*thin_places)(const void *self, laves_thin_place *places, size_t capacity);
+
+  /* Patches, and segments of creases, as features.h tells; NULL: the surface is one smooth patch as far as is known.
+   * features->oracle and context are set. */
+  laves_result (*find_features)(const struct laves__feature_wish *wish, struct laves__features *features,
+                                struct laves__feature_lines *lines, laves_error *error);
 
   void (*free)(laves_context *context, void *self);
 } laves__oracle;

@@ -1,0 +1,131 @@
+/* Finding features, and the questions that stages ask of them. */
+#include "domain/features.h"
+
+#include <string.h>
+
+/* ---- lines ---- */
+
+bool laves__feature_lines_add_point(laves__feature_lines *l, laves__vec3 point, uint32_t *index) {
+  if (!laves__grow(l->context, &l->point, &l->point_capacity, l->point_count + 1, sizeof *l->point)) return false;
+  *index = (uint32_t)l->point_count;
+  l->point[l->point_count++] = point;
+  return true;
+}
+
+bool laves__feature_lines_add_segment(laves__feature_lines *l, const laves__feature_segment *segment) {
+  if (!laves__grow(l->context, &l->segment, &l->segment_capacity, l->segment_count + 1, sizeof *l->segment)) return false;
+  l->segment[l->segment_count++] = *segment;
+  return true;
+}
+
+bool laves__feature_lines_fix(laves__feature_lines *l, uint32_t point, int32_t patch) {
+  if (!laves__grow(l->context, &l->fixed, &l->fixed_capacity, l->fixed_count + 1, sizeof *l->fixed)) return false;
+  l->fixed[l->fixed_count++] = (laves__feature_point){point, patch};
+  return true;
+}
+
+void laves__feature_lines_free(laves__feature_lines *l) {
+  if (!l->context) return;
+  laves__free(l->context, l->point, l->point_capacity, sizeof *l->point);
+  laves__free(l->context, l->segment, l->segment_capacity, sizeof *l->segment);
+  laves__free(l->context, l->fixed, l->fixed_capacity, sizeof *l->fixed);
+  memset(l, 0, sizeof *l);
+}
+
+/* ---- patches of a surface that is one ---- */
+
+static int32_t only_patch(const void *self, laves__vec3 foot, uint32_t hint) {
+  (void)self;
+  (void)foot;
+  (void)hint;
+  return 0;
+}
+
+static bool project_anywhere(const void *self, int32_t patch, laves__vec3 point, double reach, uint32_t *hint, laves__vec3 *foot,
+                             laves__vec3 *normal) {
+  (void)patch;
+  const laves__oracle *oracle = self;
+  return oracle->project(oracle->self, point, reach, hint, foot, normal);
+}
+
+static void one_patch(laves__features *f) {
+  f->patch_count = 1;
+  f->self = (void *)f->oracle;
+  f->patch_at = only_patch;
+  f->project_patch = project_anywhere;
+  f->free_self = NULL;
+}
+
+/* ---- all ---- */
+
+laves_result laves__features_find(laves_context *context, const laves__oracle *oracle, const laves__feature_wish *wish,
+                                  laves__features *features, laves_error *error) {
+  laves__feature_lines lines = {.context = context};
+  *features = (laves__features){.context = context, .oracle = oracle};
+  laves_result result = LAVES_OK;
+  one_patch(features);
+  if (oracle->find_features && (wish->angle > 0 || wish->tags)) result = oracle->find_features(wish, features, &lines, error);
+  if (result == LAVES_OK && wish->drawn) result = laves__features_drawn(wish, features, &lines, error);
+  if (result == LAVES_OK) result = laves__features_chain(&lines, wish, features, error);
+  laves__feature_lines_free(&lines);
+  return result;
+}
+
+void laves__features_free(laves__features *f) {
+  laves_context *context = f->context;
+  if (!context) return;
+  if (f->free_self) f->free_self(context, f->self);
+  laves__free(context, f->crease, f->crease_capacity, sizeof *f->crease);
+  laves__free(context, f->corner, f->corner_capacity, sizeof *f->corner);
+  laves__free(context, f->line, f->line_capacity, sizeof *f->line);
+  laves__free(context, f->corner_crease, f->corner_crease_capacity, sizeof *f->corner_crease);
+  laves__free(context, f->corner_patch, f->corner_patch_capacity, sizeof *f->corner_patch);
+  laves__free(context, f->slot_crease, f->tree.count, sizeof *f->slot_crease);
+  laves__free(context, f->slot_segment, f->tree.count, sizeof *f->slot_segment);
+  laves__bvh_free(context, &f->tree);
+  memset(f, 0, sizeof *f);
+}
+
+/* ---- questions ---- */
+
+typedef struct question {
+  const laves__features *features;
+  int32_t crease;
+} question;
+
+static double measure(void *user, uint32_t slot, double distance2, laves__vec3 p) {
+  const question *q = user;
+  (void)p;
+  return (int32_t)q->features->slot_crease[slot] == q->crease ? distance2 : INFINITY;
+}
+
+/* The point of a segment nearest to p, and its direction. */
+static laves__vec3 on_segment(const laves__features *f, uint32_t slot, laves__vec3 p, laves__vec3 *tangent) {
+  const laves__vec3 a = f->line[f->slot_segment[slot]], b = f->line[f->slot_segment[slot] + 1];
+  const laves__vec3 along = v3_sub(b, a);
+  const double length2 = v3_norm2(along), t = length2 > 0 ? v3_dot(v3_sub(p, a), along) / length2 : 0;
+  *tangent = v3_unit(along);
+  return t <= 0 ? a : t >= 1 ? b : v3_mad(a, along, t);
+}
+
+bool laves__crease_project(const laves__features *f, int32_t crease, laves__vec3 point, double reach, laves__vec3 *foot,
+                           laves__vec3 *tangent) {
+  question q = {f, crease};
+  laves__nearest nearest = {reach * reach, LAVES__NONE};
+  laves__bvh_nearest_part(&f->tree, point, measure, &q, &nearest);
+  if (nearest.slot == LAVES__NONE) return false;
+  *foot = on_segment(f, nearest.slot, point, tangent);
+  if (f->refine) f->refine(f->self, crease, foot, tangent);
+  return true;
+}
+
+int32_t laves__crease_near(const laves__features *f, laves__vec3 point, double reach, laves__vec3 *foot, laves__vec3 *tangent) {
+  laves__nearest nearest = {reach * reach, LAVES__NONE};
+  if (f->crease_count == 0) return LAVES__NO_FEATURE;
+  laves__bvh_nearest(&f->tree, point, &nearest);
+  if (nearest.slot == LAVES__NONE) return LAVES__NO_FEATURE;
+  const int32_t crease = (int32_t)f->slot_crease[nearest.slot];
+  *foot = on_segment(f, nearest.slot, point, tangent);
+  if (f->refine) f->refine(f->self, crease, foot, tangent);
+  return crease;
+}
