@@ -80,8 +80,8 @@ void laves__features_free(laves__features *f) {
   laves__free(context, f->line, f->line_capacity, sizeof *f->line);
   laves__free(context, f->corner_crease, f->corner_crease_capacity, sizeof *f->corner_crease);
   laves__free(context, f->corner_patch, f->corner_patch_capacity, sizeof *f->corner_patch);
-  laves__free(context, f->slot_crease, f->tree.count, sizeof *f->slot_crease);
-  laves__free(context, f->slot_segment, f->tree.count, sizeof *f->slot_segment);
+  laves__free(context, f->slot_crease, f->slot_count, sizeof *f->slot_crease);
+  laves__free(context, f->slot_segment, f->slot_count, sizeof *f->slot_segment);
   laves__bvh_free(context, &f->tree);
   memset(f, 0, sizeof *f);
 }

@@ -80,8 +80,9 @@ typedef struct laves__crease {
 typedef struct laves__corner {
   laves__vec3 position;
   uint32_t first_crease, crease_count; /* features->corner_crease[first .. + count), ascending; a crease that comes twice: once */
+  uint32_t end_count;                  /* ends of creases at it; a crease from it back to it has two */
   uint32_t first_patch, patch_count;   /* features->corner_patch[first .. + count), ascending: all around it */
-  bool drawn;
+  bool fixed;                          /* a tip, or drawn */
 } laves__corner;
 
 typedef struct laves__features {
@@ -95,9 +96,10 @@ typedef struct laves__features {
   laves__vec3 *line; /* the points of all creases */
   size_t line_count, line_capacity;
   int32_t *corner_crease, *corner_patch;
-  size_t corner_crease_count, corner_crease_capacity, corner_patch_count, corner_patch_capacity;
+  size_t corner_crease_capacity, corner_patch_capacity;
   laves__bvh tree;                      /* over the segments of all creases, as triangles of two equal corners */
-  uint32_t *slot_crease, *slot_segment; /* [tree.count] the crease at each slot, and its segment's first point in `line` */
+  uint32_t *slot_crease, *slot_segment; /* [slot_count] the crease at each slot, and its segment's first point in `line` */
+  size_t slot_count;
 
   size_t dropped_count; /* creases that were too short, or lay amid others that were: noise */
   size_t joined_count;  /* gaps between creases that were closed */

@@ -253,6 +253,17 @@ double laves__surface_union_volume(const laves__surface *s);
 /* Whether face `slot` bounds the solid at its point q. */
 bool laves__surface_bounds_at(const laves__surface *s, uint32_t slot, laves__vec3 q);
 
+/* Some of the faces. */
+typedef struct laves__part {
+  const int32_t *label;  /* [faces] */
+  int32_t wanted;        /* the label of those that are meant */
+  const bool *on_border; /* [points] where the part ends */
+} laves__part;
+
+/* As laves__oracle.project, on the part alone; the normal is that of its own faces. Caps of holes belong to no part. */
+bool laves__surface_project_part(const laves__surface *s, const laves__part *part, laves__vec3 point, double reach,
+                                 uint32_t *hint, laves__vec3 *foot, laves__vec3 *normal);
+
 /* The last step: s is ready, its functions go into the oracle. */
 void laves__surface_oracle(laves__surface *s, laves__oracle *oracle);
 void laves__surface_free(laves_context *context, void *self);

@@ -6,6 +6,7 @@
  * the feature (face, edge or point) on which this point lies; the normals of edges and points are sums over their faces,
  * weighted by angle [baerentzen2005]. Points of one call start from the triangle of the point before them. A hint is a
  * slot of the tree. */
+#include "domain/features.h"
 #include "domain/surface.h"
 
 /* How far from a face's point towards its middle the winding number is asked, in parts of the way: far more than rounding,
@@ -211,6 +212,50 @@ static bool project(const void *self, laves__vec3 point, double reach, uint32_t 
   return true;
 }
 
+/* ---- parts ---- */
+
+typedef struct part_search {
+  const laves__surface *surface;
+  const laves__part *part;
+} part_search;
+
+static double measure_labelled(void *user, uint32_t slot, double distance2, laves__vec3 p) {
+  const part_search *search = user;
+  if (search->part->label[slot] != search->part->wanted) return INFINITY;
+  return measure_part((void *)search->surface, slot, distance2, p);
+}
+
+/* At a point of a face: that of the face, or the mean over an edge or about a point where the part goes on. */
+static laves__vec3 part_normal(const laves__surface *s, const laves__part *part, uint32_t slot, int on) {
+  if (on == LAVES__ON_FACE) return s->face_normals[slot];
+  if (on >= LAVES__ON_CORNER)
+    return part->on_border[s->faces[slot][on - LAVES__ON_CORNER]] ? s->face_normals[slot] : feature_normal(s, slot, on);
+  const uint32_t half = s->across[3 * (size_t)slot + (size_t)(on - LAVES__ON_EDGE)];
+  return half != LAVES__NONE && part->label[half / 3] == part->wanted ? feature_normal(s, slot, on) : s->face_normals[slot];
+}
+
+/* The nearest face of all is tried first: mostly it is one of the part, and that search is the quicker one. */
+bool laves__surface_project_part(const laves__surface *s, const laves__part *part, laves__vec3 point, double reach,
+                                 uint32_t *hint, laves__vec3 *foot, laves__vec3 *normal) {
+  const part_search search = {s, part};
+  laves__nearest n = nearest_from(s, point, reach * reach, *hint);
+  if (n.slot == LAVES__NONE) return false;
+  if (part->label[n.slot] != part->wanted || (s->needs_winding && (s->face_flags[n.slot] & LAVES__PARTIAL))) {
+    n = (laves__nearest){reach * reach, LAVES__NONE};
+    laves__bvh_nearest_part(&s->bvh, point, measure_labelled, (void *)&search, &n);
+    if (n.slot == LAVES__NONE) return false;
+  }
+  int on;
+  uint32_t other = LAVES__NONE;
+  if (s->needs_winding && (s->face_flags[n.slot] & LAVES__PARTIAL))
+    closest_part(s, n.slot, point, foot, &on, &other);
+  else
+    *foot = laves__triangle_closest(&s->bvh.triangles[n.slot], point, &on);
+  *normal = v3_unit(other == LAVES__NONE ? part_normal(s, part, n.slot, on) : s->face_normals[n.slot]);
+  *hint = n.slot;
+  return true;
+}
+
 static laves__side side(const void *self, laves__vec3 centre, double radius, laves__vec3 half) {
   const laves__surface *s = self;
   const double reach = fmin(radius, v3_norm(half));
@@ -244,6 +289,7 @@ void laves__surface_oracle(laves__surface *s, laves__oracle *oracle) {
   oracle->tag = s->tags ? tag : NULL;
   oracle->sample = laves__surface_sample;
   oracle->surface = s;
+  if (!s->open) oracle->find_features = laves__features_of_surface;
   if (!s->open && !s->needs_winding) {
     oracle->flat_face_count = s->face_count;
     oracle->flat_face = flat_face;
