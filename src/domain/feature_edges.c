@@ -4,6 +4,7 @@
  *
  *   normals    of slivers say nothing: they take that of the neighbour across their longest edge, in whose plane they lie
  *   mark       edges whose faces' normals are further apart than the angle, and, when asked, edges between tags
+ *   confirm    what looks sharp between two small triangles must be so between the means of what lies around, within half a size
  *   join       where a crease ends, it may go on along blunter edges if that leads to another one soon
  *   prune      ends shorter than the size, and groups of creases that are no longer together, are noise
  *
@@ -16,12 +17,14 @@
 
 /* A face is a sliver when its height is below this share of the size: it can't matter to the mesh. */
 static const double sliver_height = 1e-4;
-enum { SLIVER_STEPS = 16, JOIN_STEPS = 64 };
-static const double blunt_share = 0.5;   /* of the angle: what a join may follow */
-static const double join_range = 2;      /* sizes: how long it may be */
-static const double join_cosine = 0.766; /* it goes on within 40 degrees of its direction */
-static const double short_end = 1;       /* sizes: a dangling end below that goes */
-static const double short_group = 2.5;   /* sizes: as does a group of creases of less length in all */
+enum { SLIVER_STEPS = 16, JOIN_STEPS = 64, AROUND_MAX = 256 };
+static const double around_range = 0.5;   /* sizes: how far from an edge normals are averaged */
+static const double confirm_share = 0.75; /* of the angle: what the means must still be apart */
+static const double blunt_share = 0.5;    /* of the angle: what a join may follow */
+static const double join_range = 2;       /* sizes: how long it may be */
+static const double join_cosine = 0.766;  /* it goes on within 40 degrees of its direction */
+static const double short_end = 1;        /* sizes: a dangling end below that goes */
+static const double short_group = 2.5;    /* sizes: as does a group of creases of less length in all */
 
 static uint32_t start_of(const laves__feature_edges *e, uint32_t h) { return laves__half_start(e->surface, h); }
 static uint32_t end_of(const laves__feature_edges *e, uint32_t h) { return laves__half_end(e->surface, h); }
@@ -90,6 +93,51 @@ static void mark(const laves__feature_edges *e) {
   const double cosine = e->wish->angle > 0 ? cosine_of(e->wish->angle) : -2;
   for (uint32_t h = 0; h < 3 * e->surface->face_count; h++)
     if (is_turned(e, h, cosine) || parts_tags(e, h)) set_crease(e, h, true);
+}
+
+/* The mean normals on both sides of an edge, of the faces around it whose centroid is near; each face counts at most for the area
+ * of a disk of that radius. The sides are those of the plane through the edge that halves the angle between its faces. */
+static void mean_normals(const laves__feature_edges *e, uint32_t h, uint32_t *stamp, laves__vec3 mean[2]) {
+  const laves__surface *s = e->surface;
+  const double range = around_range * e->wish->size;
+  const uint32_t g = s->across[h];
+  const laves__vec3 a = s->points[start_of(e, h)], b = s->points[end_of(e, h)], middle = v3_lerp(a, b, 0.5);
+  const laves__vec3 aside = v3_cross(v3_sub(b, a), v3_add(e->normal[h / 3], e->normal[g / 3])); /* to the right */
+  uint32_t list[AROUND_MAX];
+  size_t count = 0;
+  list[count++] = h / 3;
+  list[count++] = g / 3;
+  stamp[h / 3] = stamp[g / 3] = h;
+  mean[0] = mean[1] = v3(0, 0, 0);
+  for (size_t head = 0; head < count; head++) {
+    const uint32_t f = list[head], *p = s->faces[f];
+    const laves__vec3 u = s->points[p[0]], v = s->points[p[1]], w = s->points[p[2]];
+    const laves__vec3 from = v3_sub(v3_scale(v3_add(u, v3_add(v, w)), 1.0 / 3), middle);
+    const bool near = v3_norm2(from) <= range * range;
+    if (head > 1 && !near) continue;
+    const double area = 0.5 * v3_norm(v3_cross(v3_sub(v, u), v3_sub(w, u)));
+    const int side = head < 2 ? (int)head : v3_dot(from, aside) > 0;
+    mean[side] = v3_mad(mean[side], e->normal[f], fmin(area, range * range));
+    for (uint32_t k = 3 * f; k < 3 * f + 3 && count < AROUND_MAX; k++) {
+      const uint32_t next = s->across[k];
+      if (next == LAVES__NONE || stamp[next / 3] == h) continue;
+      stamp[next / 3] = h;
+      list[count++] = next / 3;
+    }
+  }
+}
+
+/* Takes away marks that stand for the roughness of a surface finer than the size. */
+static void confirm(const laves__feature_edges *e, uint32_t *stamp) {
+  if (!(e->wish->angle > 0)) return;
+  const double cosine = cosine_of(confirm_share * e->wish->angle);
+  memset(stamp, 0xff, e->surface->face_count * sizeof *stamp);
+  for (uint32_t h = 0; h < 3 * e->surface->face_count; h++) {
+    laves__vec3 mean[2];
+    if (!e->is_crease[h] || e->surface->across[h] < h || parts_tags(e, h)) continue;
+    mean_normals(e, h, stamp, mean);
+    if (v3_dot(v3_unit(mean[0]), v3_unit(mean[1])) > cosine) set_crease(e, h, false);
+  }
 }
 
 static void list_half_edges(const laves__feature_edges *e) {
@@ -241,15 +289,18 @@ bool laves__feature_edges_find(laves_context *context, const laves__surface *s, 
   e->degree = laves__alloc_zeroed(context, points, sizeof *e->degree);
   uint32_t *stack = laves__alloc(context, points, sizeof *stack);
   bool *seen = laves__alloc_zeroed(context, points, sizeof *seen);
-  const bool done = e->normal && e->is_crease && e->first && e->at && e->degree && stack && seen;
+  uint32_t *stamp = laves__alloc(context, s->face_count, sizeof *stamp);
+  const bool done = stamp && e->normal && e->is_crease && e->first && e->at && e->degree && stack && seen;
   if (done) {
     find_normals(e);
     list_half_edges(e);
     mark(e);
+    confirm(e, stamp);
     join(e);
     prune_ends(e);
     prune_groups(e, stack, seen);
   }
+  laves__free(context, stamp, s->face_count, sizeof *stamp);
   laves__free(context, stack, points, sizeof *stack);
   laves__free(context, seen, points, sizeof *seen);
   return done;
