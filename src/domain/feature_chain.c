@@ -137,6 +137,7 @@ static bool follow(const chaining *c, uint32_t start, uint32_t segment) {
   crease.closed = !c->is_corner[start];
   if (!laves__grow(f->context, &f->crease, &f->crease_capacity, f->crease_count + 1, sizeof *f->crease)) return false;
   f->crease[f->crease_count++] = crease;
+  f->has_seams |= crease.patch[0] == crease.patch[1];
   return true;
 }
 

@@ -88,15 +88,32 @@ void laves__features_free(laves__features *f) {
 
 /* ---- questions ---- */
 
+/* Which creases are meant. */
 typedef struct question {
   const laves__features *features;
-  int32_t crease;
+  int32_t crease;        /* this one alone; LAVES__NO_FEATURE: those below */
+  int32_t patch;         /* on one side; LAVES__NO_FEATURE: any */
+  const int32_t *others; /* patches of which one is on the other side; NULL: any */
+  int other_count;
 } question;
+
+static bool is_meant(const question *q, int32_t crease) {
+  const int32_t *patch = q->features->crease[crease].patch;
+  if (q->crease != LAVES__NO_FEATURE) return crease == q->crease;
+  if (q->patch == LAVES__NO_FEATURE) return true;
+  for (int side = 0; side < 2; side++) {
+    if (patch[side] != q->patch) continue;
+    if (!q->others) return true;
+    for (int i = 0; i < q->other_count; i++)
+      if (patch[1 - side] == q->others[i]) return true;
+  }
+  return false;
+}
 
 static double measure(void *user, uint32_t slot, double distance2, laves__vec3 p) {
   const question *q = user;
   (void)p;
-  return (int32_t)q->features->slot_crease[slot] == q->crease ? distance2 : INFINITY;
+  return is_meant(q, (int32_t)q->features->slot_crease[slot]) ? distance2 : INFINITY;
 }
 
 /* The point of a segment nearest to p, and its direction. */
@@ -108,24 +125,54 @@ static laves__vec3 on_segment(const laves__features *f, uint32_t slot, laves__ve
   return t <= 0 ? a : t >= 1 ? b : v3_mad(a, along, t);
 }
 
-bool laves__crease_project(const laves__features *f, int32_t crease, laves__vec3 point, double reach, laves__vec3 *foot,
-                           laves__vec3 *tangent) {
-  question q = {f, crease};
-  laves__nearest nearest = {reach * reach, LAVES__NONE};
-  laves__bvh_nearest_part(&f->tree, point, measure, &q, &nearest);
-  if (nearest.slot == LAVES__NONE) return false;
-  *foot = on_segment(f, nearest.slot, point, tangent);
-  if (f->refine) f->refine(f->self, crease, foot, tangent);
-  return true;
-}
-
-int32_t laves__crease_near(const laves__features *f, laves__vec3 point, double reach, laves__vec3 *foot, laves__vec3 *tangent) {
+static int32_t ask(question *q, laves__vec3 point, double reach, laves__vec3 *foot, laves__vec3 *tangent) {
+  const laves__features *f = q->features;
   laves__nearest nearest = {reach * reach, LAVES__NONE};
   if (f->crease_count == 0) return LAVES__NO_FEATURE;
-  laves__bvh_nearest(&f->tree, point, &nearest);
+  laves__bvh_nearest_part(&f->tree, point, measure, q, &nearest);
   if (nearest.slot == LAVES__NONE) return LAVES__NO_FEATURE;
   const int32_t crease = (int32_t)f->slot_crease[nearest.slot];
   *foot = on_segment(f, nearest.slot, point, tangent);
   if (f->refine) f->refine(f->self, crease, foot, tangent);
   return crease;
+}
+
+bool laves__crease_project(const laves__features *f, int32_t crease, laves__vec3 point, double reach, laves__vec3 *foot,
+                           laves__vec3 *tangent) {
+  question q = {f, crease, LAVES__NO_FEATURE, NULL, 0};
+  return ask(&q, point, reach, foot, tangent) != LAVES__NO_FEATURE;
+}
+
+int32_t laves__crease_near(const laves__features *f, laves__vec3 point, double reach, laves__vec3 *foot, laves__vec3 *tangent) {
+  question q = {f, LAVES__NO_FEATURE, LAVES__NO_FEATURE, NULL, 0};
+  return ask(&q, point, reach, foot, tangent);
+}
+
+int32_t laves__seam_near(const laves__features *f, int32_t patch, laves__vec3 point, double reach, laves__vec3 *foot,
+                         laves__vec3 *tangent) {
+  question q = {f, LAVES__NO_FEATURE, patch, &patch, 1};
+  return f->has_seams ? ask(&q, point, reach, foot, tangent) : LAVES__NO_FEATURE;
+}
+
+int32_t laves__crease_between(const laves__features *f, int32_t patch, const int32_t *others, int other_count, laves__vec3 point,
+                              double reach, laves__vec3 *foot) {
+  question q = {f, LAVES__NO_FEATURE, patch, others, other_count};
+  laves__vec3 tangent;
+  return ask(&q, point, reach, foot, &tangent);
+}
+
+laves__vec3 laves__crease_point_at(const laves__features *f, int32_t crease, int end, double way) {
+  const laves__crease *c = &f->crease[crease];
+  const laves__vec3 *line = f->line + c->first;
+  for (uint32_t i = 0; i + 1 < c->count; i++) {
+    const laves__vec3 a = line[end ? c->count - 1 - i : i], b = line[end ? c->count - 2 - i : i + 1];
+    const double length = v3_distance(a, b);
+    if (way <= length && length > 0) {
+      laves__vec3 foot = v3_lerp(a, b, way / length), tangent;
+      if (f->refine) f->refine(f->self, crease, &foot, &tangent);
+      return foot;
+    }
+    way -= length;
+  }
+  return line[end ? 0 : c->count - 1];
 }

@@ -101,6 +101,8 @@ typedef struct laves__features {
   uint32_t *slot_crease, *slot_segment; /* [slot_count] the crease at each slot, and its segment's first point in `line` */
   size_t slot_count;
 
+  bool has_seams; /* creases with one patch on both sides */
+
   size_t dropped_count; /* creases that were too short, or lay amid others that were: noise */
   size_t joined_count;  /* gaps between creases that were closed */
 
@@ -148,5 +150,14 @@ bool laves__crease_project(const laves__features *features, int32_t crease, lave
 /* The crease nearest to a point within reach, or LAVES__NO_FEATURE; foot and tangent as above. */
 int32_t laves__crease_near(const laves__features *features, laves__vec3 point, double reach, laves__vec3 *foot,
                            laves__vec3 *tangent);
+
+/* The same among creases that have `patch` on both sides. */
+int32_t laves__seam_near(const laves__features *features, int32_t patch, laves__vec3 point, double reach, laves__vec3 *foot,
+                         laves__vec3 *tangent);
+/* The same among creases with `patch` on one side and a patch of `others` on the other; others NULL: any. */
+int32_t laves__crease_between(const laves__features *features, int32_t patch, const int32_t *others, int other_count,
+                              laves__vec3 point, double reach, laves__vec3 *foot);
+/* The point of a crease at a way along it from its first (end 0) or last point (end 1); its other end where it is shorter. */
+laves__vec3 laves__crease_point_at(const laves__features *features, int32_t crease, int end, double way);
 
 #endif

@@ -11,7 +11,8 @@
 
 typedef struct laves__frame {
   const laves__oracle *oracle;
-  laves__vec3 centre; /* local coordinates of the lattice's zero point */
+  const struct laves__features *features; /* that are kept; NULL: none */
+  laves__vec3 centre;                     /* local coordinates of the lattice's zero point */
   laves__mat3 rotation;
   double size;
 } laves__frame;

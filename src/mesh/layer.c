@@ -90,6 +90,7 @@ void laves__layer_free(laves__layer *layer) {
   laves__free(context, layer->normal, vertices, sizeof *layer->normal);
   laves__free(context, layer->hint, vertices, sizeof *layer->hint);
   laves__free(context, layer->depth, vertices, sizeof *layer->depth);
+  laves__free(context, layer->hold, layer->hold ? vertices : 0, sizeof *layer->hold);
   laves__free(context, layer->off_surface, vertices, sizeof *layer->off_surface);
   laves__free(context, layer->scale, layer->scale ? vertices : 0, sizeof *layer->scale);
   laves__free(context, layer->origin, vertices, sizeof *layer->origin);

@@ -11,6 +11,7 @@
 
 #include "base/base.h"
 #include "base/vec3.h"
+#include "mesh/hold.h"
 
 enum {
   LAVES__DEPTH_MOVES = 2, /* vertices this many edges from the surface may still move */
@@ -27,9 +28,10 @@ typedef struct laves__layer {
   laves_context *context;
   size_t vertex_count;
   laves__vec3 *position;
-  laves__vec3 *normal; /* of the surface, outwards; for depth 0 */
+  laves__vec3 *normal; /* for depth 0: of the surface, outwards, or the tangent of the crease that holds it */
   uint32_t *hint;      /* for the oracle; for depth 0 */
   uint8_t *depth;      /* 0: on the surface */
+  laves__hold *hold;   /* for depth 0: what holds it; NULL: nothing but the surface holds any */
   bool *off_surface;   /* depth 0, but not on the surface: it could not be reached with positive tets */
   float *scale;        /* the local size, in sizes, on a graded background; NULL: 1 everywhere */
   uint32_t *origin;    /* record * 24 + site, or LAVES__NO_ORIGIN for the further copies of a parted vertex */
@@ -52,6 +54,10 @@ laves_result laves__layer_link(laves__layer *layer, laves_error *error);
 bool laves__layer_extend(laves__layer *layer, size_t extra);
 void laves__layer_free(laves__layer *layer);
 
+/* What holds a vertex of depth 0. */
+static inline laves__hold laves__layer_hold(const laves__layer *layer, int32_t vertex) {
+  return layer->hold ? layer->hold[vertex] : (laves__hold){0, LAVES__HOLD_SURFACE};
+}
 static inline void laves__layer_points(const laves__layer *layer, int32_t tet, laves__vec3 p[4]) {
   for (int k = 0; k < 4; k++) p[k] = layer->position[layer->tet[tet][k]];
 }
