@@ -10,7 +10,9 @@
 
 #include "assemble/assemble.h"
 #include "classify/classify.h"
+#include "domain/features.h"
 #include "estimate.h"
+#include "features/keep.h"
 #include "graded/graded.h"
 #include "graded/wishes.h"
 #include "improve/improve.h"
@@ -30,6 +32,8 @@ typedef struct run {
   laves__size *sizes; /* NULL: the size is the same everywhere, and the next three are not used */
   laves__wishes wishes;
   laves__octree tree;
+  laves__features features;
+  laves__kept_counts kept_features;
   laves__graph graph;
   laves__lattice lattice;
   laves__layer layer;
@@ -112,6 +116,27 @@ static laves_result choose_sizes(run *r) {
     }
   }
   if (r->sizes) end_stage(r, "sizes");
+  return result;
+}
+
+/* What is sharp, or drawn. */
+static laves_result find_features(run *r) {
+  const laves_options *o = r->options;
+  const laves__feature_wish wish = {
+      .angle = o->feature_angle, .tags = o->feature_tags, .drawn = o->features, .size = r->frame.size};
+  begin_stage(r);
+  laves__features_free(&r->features);
+  const laves_result result = laves__features_find(r->context, &r->domain->oracle, &wish, &r->features, r->error);
+  r->frame.features = r->features.crease_count || r->features.corner_count ? &r->features : NULL;
+  if (r->frame.features) end_stage(r, "features");
+  return result;
+}
+
+static laves_result keep_features(run *r) {
+  if (!r->frame.features) return LAVES_OK;
+  begin_stage(r);
+  const laves_result result = laves__keep_features(&r->frame, &r->layer, &r->kept_features, r->error);
+  end_stage(r, "features");
   return result;
 }
 
@@ -432,6 +457,8 @@ laves_result laves_generate(laves_context *context, const laves_domain *domain, 
   if (result == LAVES_OK) result = choose_sizes(&r);
   for (bool again = true; again && result == LAVES_OK;) {
     result = make_boundary(&r);
+    if (result == LAVES_OK) result = find_features(&r);
+    if (result == LAVES_OK) result = keep_features(&r);
     if (result == LAVES_OK) result = improve_and_keep_promise(&r);
     if (result == LAVES_OK) result = make_mesh(&r, mesh);
     if (result == LAVES_OK) result = refine_where_distant(&r, mesh, &again);
@@ -443,6 +470,7 @@ laves_result laves_generate(laves_context *context, const laves_domain *domain, 
     laves_mesh_free(*mesh);
     *mesh = NULL;
   }
+  laves__features_free(&r.features);
   laves__layer_free(&r.layer);
   laves__lattice_free(&r.lattice);
   laves__graph_free(&r.graph);

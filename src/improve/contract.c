@@ -7,6 +7,7 @@
 #include "improve/contract.h"
 
 #include "improve/fit.h"
+#include "improve/guard.h"
 #include "improve/smooth.h"
 
 enum {
@@ -212,14 +213,28 @@ static bool keeps_surface(const contraction *c, laves__layer *layer, int32_t a, 
   return laves__fit_within(&now, &earlier) && try_contraction(c, layer, a, b, r, before, j);
 }
 
+/* Faults of features about a merge: of both ends, or of the one that is left, and of the creases and corners around the edge. */
+static int faults_around(const contraction *c, const laves__layer *layer, int32_t a, int32_t b, const ring *r) {
+  int faults = laves__feature_faults(c->frame, layer, a);
+  if (layer->star[b].count > 0) faults += laves__feature_faults(c->frame, layer, b);
+  for (int i = 0; i < r->vertex_count; i++)
+    if (layer->depth[r->vertex[i]] == 0 && layer->hold[r->vertex[i]].kind >= LAVES__HOLD_CREASE)
+      faults += laves__feature_faults(c->frame, layer, r->vertex[i]);
+  return faults;
+}
+
 static bool contract(const contraction *c, laves__layer *layer, int32_t a, int32_t b, laves__journal *j) {
   if (!laves__layer_moves(layer, a) || !laves__layer_moves(layer, b)) return false;
   if (layer->depth[b] == 0 && layer->depth[a] != 0) return false;
+  const bool held = layer->hold && layer->depth[b] == 0;
+  if (held && !laves__may_merge(c->frame, layer, b, a)) return false;
   ring r;
   if (!find_ring(layer, a, b, &r) || !keeps_topology(layer, a, b, &r)) return false;
   const double before = fmin(laves__star_quality(layer, a), laves__star_quality(layer, b));
-  const bool good =
-      try_contraction(c, layer, a, b, &r, before, j) && (layer->depth[a] != 0 || keeps_surface(c, layer, a, b, &r, before, j));
+  const int faults = held ? faults_around(c, layer, a, b, &r) : 0;
+  const bool good = try_contraction(c, layer, a, b, &r, before, j) &&
+                    (layer->depth[a] != 0 || keeps_surface(c, layer, a, b, &r, before, j)) &&
+                    (!held || faults_around(c, layer, a, b, &r) <= faults);
   if (!good) laves__journal_undo(j, layer);
   laves__journal_clear(j);
   return good;

@@ -15,8 +15,9 @@ typedef struct laves__fit {
 /* Faces that an operation makes may lie as far from the surface, and this much across it. */
 #define LAVES__FIT_LIMIT ((laves__fit){0.10, 0.8})
 
-/* Takes one face, counter-clockwise from outside, into account; the hint and the scale are those of a vertex near. */
-void laves__fit_face(const laves__frame *frame, const laves__vec3 p[3], uint32_t hint, double scale, laves__fit *fit);
+/* Takes one face of boundary vertices, counter-clockwise from outside, into account. Where features are kept it is compared with
+ * the patch that its corners have in common; one that has none does not fit. */
+void laves__fit_face(const laves__frame *frame, const laves__layer *layer, const int32_t face[3], laves__fit *fit);
 /* All boundary faces around a surface vertex. */
 void laves__fit_star(const laves__frame *frame, const laves__layer *layer, int32_t vertex, laves__fit *fit);
 

@@ -108,7 +108,7 @@ static double quality_of(const flipping *f, const int32_t t[4]) {
     p[k] = f->layer->position[t[k]];
     scale += 0.25 * laves__layer_scale(f->layer, t[k]);
   }
-  return laves__quality(f->measure, p, scale * scale * scale);
+  return laves__quality(f->measure, p, scale * scale * scale, 0);
 }
 
 static void add_fresh(change *c, int32_t a, int32_t b, int32_t d, int32_t e, double quality) {
@@ -184,11 +184,11 @@ static bool may_open(const flipping *f, int32_t a, int32_t b, const ring *r) {
   const laves__layer *l = f->layer;
   const int32_t v = r->vertex[0], w = r->vertex[r->count - 1];
   if (l->depth[a] != 0 || l->depth[b] != 0 || l->depth[v] != 0 || l->depth[w] != 0 || has_edge(l, v, w)) return false;
-  const laves__vec3 upper[3] = {l->position[a], l->position[w], l->position[v]};
-  const laves__vec3 lower[3] = {l->position[b], l->position[v], l->position[w]};
+  if (laves__is_crease_edge(f->frame, l, a, b)) return false;
+  const int32_t upper[3] = {a, w, v}, lower[3] = {b, v, w};
   laves__fit fit = LAVES__FIT_NONE;
-  laves__fit_face(f->frame, upper, l->hint[a], laves__layer_scale(l, a), &fit);
-  laves__fit_face(f->frame, lower, l->hint[b], laves__layer_scale(l, b), &fit);
+  laves__fit_face(f->frame, l, upper, &fit);
+  laves__fit_face(f->frame, l, lower, &fit);
   return laves__fit_within(&fit, &LAVES__FIT_LIMIT);
 }
 

@@ -53,7 +53,8 @@ laves__measure laves__measure_of(const laves__window *w) {
                           .held_high = w->held_min > 0 ? 1 + cos(w->held_max * radians) : -1};
 }
 
-/* Where sizes vary, the lattice's connectivity is not what it is in C15, and flips pay; they need some dead tets. */
+/* Where sizes vary, and where features are kept, the connectivity is not what it is in C15, and flips pay; they need some dead
+ * tets. */
 static const size_t spare_share = 8, spare_min = 1024;
 
 /* A bad tet and the block of space in which it is worked on; blocks of a level are 2^level times as large. */
@@ -273,7 +274,8 @@ static void peel_all(work *w) {
   for (bool again = true; again;) {
     again = false;
     for (size_t t = 0; t < w->layer->tet_count; t++)
-      if (w->layer->tet[t][0] >= 0 && w->layer->quality[t] < peel_below && laves__peel_tet(w->layer, (int32_t)t)) again = true;
+      if (w->layer->tet[t][0] >= 0 && w->layer->quality[t] < peel_below && laves__peel_tet(w->frame, w->layer, (int32_t)t))
+        again = true;
   }
 }
 
@@ -333,20 +335,30 @@ static laves_result mend_graded(work *w, laves_error *error) {
   return result;
 }
 
+/* Creases sharper than the window, and a little more, fix the angle of a tet that fills them alone. */
+static void leave_out_sharp(work *w, const laves__window *window) {
+  static const double margin = 2; /* degrees */
+  const laves__features *f = w->layer->hold ? w->frame->features : NULL;
+  w->measure.sharper_than = window->min_dihedral + margin;
+  for (size_t i = 0; f && i < f->crease_count; i++)
+    if (f->crease[i].least_angle < w->measure.sharper_than) w->measure.sharp = f;
+}
+
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {
   laves_context *context = layer->context;
   const bool graded = layer->scale != NULL;
   work w = {.frame = frame, .measure = laves__measure_of(window), .target = 1, .admit = 1, .layer = layer};
+  leave_out_sharp(&w, window);
   const int workers = laves__workers(context);
   laves_result result = LAVES_OK;
-  if (graded && !laves__layer_extend(layer, layer->tet_count / spare_share + spare_min))
-    return laves__fail_memory(context, error);
-  if (graded) w.spare = laves__alloc(context, layer->tet_count, sizeof *w.spare);
+  const bool flips = graded || layer->hold;
+  if (flips && !laves__layer_extend(layer, layer->tet_count / spare_share + spare_min)) return laves__fail_memory(context, error);
+  if (flips) w.spare = laves__alloc(context, layer->tet_count, sizeof *w.spare);
   w.journal = laves__alloc_zeroed(context, (size_t)workers, sizeof *w.journal);
   w.given_up = laves__alloc(context, layer->tet_count, sizeof *w.given_up);
   w.stuck = laves__alloc(context, layer->tet_count, sizeof *w.stuck);
   w.tries = laves__alloc_zeroed(context, layer->tet_count, 1);
-  if (!w.journal || !w.given_up || !w.stuck || !w.tries || (graded && !w.spare)) {
+  if (!w.journal || !w.given_up || !w.stuck || !w.tries || (flips && !w.spare)) {
     result = laves__fail_memory(context, error);
     goto cleanup;
   }

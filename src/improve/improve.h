@@ -5,8 +5,9 @@
  *     relax.c      a quick Laplace start for surface vertices
  *     smooth.c     one vertex: max-min ascent by a proximal bundle step, on the surface for surface vertices
  *     contract.c   one edge: contraction, with everything undone when the worst does not rise
- *     flip.c       edges and faces: other tets between the same vertices, on graded backgrounds
+ *     flip.c       edges and faces: other tets between the same vertices, on graded backgrounds and where features are kept
  *     fit.c        how boundary faces lie to the surface
+ *     guard.c      what must not happen to creases and corners
  *     journal.h    what was changed, so that it can be undone
  *
  * Source: the project's own measurements; max-min smoothing after [freitag1997], contraction after [klingner2007]. */

@@ -5,10 +5,13 @@
  *
  * q >= 1 means inside the window. Where a second, wider window is held, tets outside it count as flat, so that no step that
  * makes one is taken. Flat and inverted tets get their volume (at most FLAT, in cubes of the local size), so that untangling
- * is part of the same ascent. Angles come from the four face normals N_i (outwards, opposite corner i): cos t_ij = -n_i . n_j. */
+ * is part of the same ascent. Angles that the input fixes, at creases sharper than the window that one tet fills alone, are left
+ * out, with the volume-length ratio of their tets: they must not drag their neighbours down. Angles come from the four face
+ * normals N_i (outwards, opposite corner i): cos t_ij = -n_i . n_j. */
 #ifndef LAVES_IMPROVE_MEASURE_H
 #define LAVES_IMPROVE_MEASURE_H
 
+#include "improve/guard.h"
 #include "improve/improve.h"
 
 /* Six times the volume, in cubes of the local size, below which a tet counts as flat; a regular one has 0.71. */
@@ -21,12 +24,21 @@ typedef struct laves__measure {
   double length_scale; /* 1 / vt, or a large number when not asked */
   double held_low;     /* 1 - cos of the least angle that is held, 1 + cos of the largest; -1: none is */
   double held_high;
+  const laves__features *sharp; /* creases of which some are sharper than the next; NULL: none */
+  double sharper_than;          /* degrees */
 } laves__measure;
 
 laves__measure laves__measure_of(const laves__window *window);
 
 /* The pairs of faces, in the order of laves__tet_edge. */
 static const uint8_t laves__face_pair[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
+/* The dihedral angle between faces i and j is at the edge between the two other corners. */
+static inline bool laves__is_fixed(unsigned fixed, int pair) { return fixed >> (5 - pair) & 1; }
+
+static inline unsigned laves__measure_fixed(const laves__measure *m, const laves__layer *layer, int32_t tet) {
+  return m->sharp ? laves__fixed_edges(m->sharp, m->sharper_than, layer, tet) : 0;
+}
 
 static inline void laves__face_normals(const laves__vec3 p[4], laves__vec3 n[4]) {
   const laves__vec3 ab = v3_sub(p[1], p[0]), ac = v3_sub(p[2], p[0]), ad = v3_sub(p[3], p[0]);
@@ -41,8 +53,8 @@ static inline double laves__edge_sum(const laves__vec3 p[4]) {
          v3_norm2(v3_sub(p[2], p[1])) + v3_norm2(v3_sub(p[3], p[1])) + v3_norm2(v3_sub(p[3], p[2]));
 }
 
-/* `cube`: that of the local size. */
-static inline double laves__quality(const laves__measure *m, const laves__vec3 p[4], double cube) {
+/* `cube`: that of the local size; `fixed`: edges that are left out. */
+static inline double laves__quality(const laves__measure *m, const laves__vec3 p[4], double cube, unsigned fixed) {
   laves__vec3 n[4];
   laves__face_normals(p, n);
   const double volume6 = -v3_dot(n[3], v3_sub(p[3], p[0]));
@@ -53,6 +65,7 @@ static inline double laves__quality(const laves__measure *m, const laves__vec3 p
   for (int e = 0; e < 6; e++) {
     const int i = laves__face_pair[e][0], j = laves__face_pair[e][1];
     const double d = v3_dot(n[i], n[j]) * per_length[i] * per_length[j];
+    if (fixed && laves__is_fixed(fixed, e)) continue;
     if (d < least) least = d;
     if (d > most) most = d;
   }
@@ -61,14 +74,14 @@ static inline double laves__quality(const laves__measure *m, const laves__vec3 p
   double q = (1 + least) * m->low_scale;
   const double high = (1 - most) * m->high_scale, length = LAVES__SQRT2 * volume6 / (mean * sqrt(mean)) * m->length_scale;
   if (high < q) q = high;
-  if (length < q) q = length;
+  if (length < q && !fixed) q = length;
   return q > LAVES__FLAT ? q : LAVES__FLAT;
 }
 
 static inline double laves__layer_quality(const laves__measure *m, const laves__layer *layer, int32_t tet) {
   laves__vec3 p[4];
   laves__layer_points(layer, tet, p);
-  return laves__quality(m, p, laves__layer_cube(layer, tet));
+  return laves__quality(m, p, laves__layer_cube(layer, tet), laves__measure_fixed(m, layer, tet));
 }
 
 #endif

@@ -1,9 +1,11 @@
 /* Laplace sweeps on the surface: each surface vertex goes most of the way to the mean of its surface neighbours, counted
- * once for each tet that they share with it, and back on to the surface.  All vertices at once, into a second array, so
+ * once for each tet that they share with it, and back on to the surface. One on a patch counts the neighbours that belong to it,
+ * too, one on a crease those along it.  All vertices at once, into a second array, so
  * that the order does not matter; it evens out the surface and spares a quarter of the later work. */
 #include "improve/relax.h"
 
 #include "base/predicates.h"
+#include "domain/held.h"
 
 static const double share = 0.7;          /* of the way to the mean */
 static const double surface_reach = 0.75; /* local sizes */
@@ -21,6 +23,15 @@ typedef struct sweep {
   place *other; /* [vertex_count] the new places; after the exchange the old ones */
 } sweep;
 
+/* Whether a neighbour draws a vertex. */
+static bool draws(const sweep *s, int32_t v, int32_t w) {
+  const laves__layer *layer = s->layer;
+  const laves__hold hold = laves__layer_hold(layer, v);
+  if (hold.kind == LAVES__HOLD_PATCH) return laves__hold_has_patch(s->frame->features, layer->hold[w], hold.id);
+  if (hold.kind == LAVES__HOLD_CREASE) return laves__hold_on_crease(s->frame->features, layer->hold[w], hold.id);
+  return v3_dot(layer->normal[v], layer->normal[w]) > 0; /* else the other side of a thin wall */
+}
+
 static void find_places(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const sweep *s = user;
@@ -28,15 +39,15 @@ static void find_places(void *user, size_t begin, size_t end, int worker) {
   for (size_t v = begin; v < end; v++) {
     place *p = &s->other[v];
     p->moved = false;
-    if (layer->depth[v] != 0 || layer->off_surface[v]) continue;
+    const laves__hold hold = laves__layer_hold(layer, (int32_t)v);
+    if (layer->depth[v] != 0 || layer->off_surface[v] || hold.kind == LAVES__HOLD_CORNER) continue;
     const laves__star *star = &layer->star[v];
     laves__vec3 sum = {0, 0, 0};
     int count = 0;
     for (int i = 0; i < star->count; i++)
       for (int k = 0; k < 4; k++) {
         const int32_t w = layer->tet[star->tet[i]][k];
-        if (w == (int32_t)v || layer->depth[w] != 0) continue;
-        if (v3_dot(layer->normal[v], layer->normal[w]) <= 0) continue; /* the other side of a thin wall */
+        if (w == (int32_t)v || layer->depth[w] != 0 || !draws(s, (int32_t)v, w)) continue;
         sum = v3_add(sum, layer->position[w]);
         count++;
       }
@@ -44,8 +55,8 @@ static void find_places(void *user, size_t begin, size_t end, int worker) {
     const laves__vec3 aim = v3_lerp(layer->position[v], v3_scale(sum, 1.0 / count), share);
     p->hint = layer->hint[v];
     const double reach = surface_reach * laves__layer_scale(layer, (int32_t)v);
-    p->moved =
-        laves__frame_project(s->frame, aim, reach, &p->hint, &p->position, &p->normal) && v3_distance(p->position, aim) <= reach;
+    p->moved = laves__frame_project_held(s->frame, hold, aim, reach, &p->hint, &p->position, &p->normal) &&
+               v3_distance(p->position, aim) <= reach;
   }
 }
 

@@ -8,8 +8,8 @@
  *
  * whose dual is a small quadratic programme over the simplex, d = tau sum_k lambda_k g_k, solved by moving weight between
  * two functions at a time. The step is taken only when the worst truly rises by a tenth of what the model foretells; tau
- * grows when the model is good and shrinks when it is not. For a surface vertex gradients lose their normal part and the
- * trial point is projected before it is measured.
+ * grows when the model is good and shrinks when it is not. For a surface vertex gradients lose their normal part, for one on a
+ * crease they keep their tangential part alone, and the trial point is projected before it is measured.
  *
  * Gradient of n_k . n_l, for unit normals of two faces: each face that holds the vertex adds
  * e x (n_other - (n_k . n_l) n_own) / |N_own|, where e runs along the edge opposite the vertex in that face. */
@@ -60,8 +60,9 @@ static laves__vec3 dot_gradient(const laves__vec3 p[4], int c, const laves__vec3
   return g;
 }
 
-/* Adds the functions of one tet that lie below `ceiling`; `cube` is that of the local size. */
-static void add_tet(bundle *b, const laves__measure *m, const laves__vec3 p[4], double cube, int c, double ceiling) {
+/* Adds the functions of one tet that lie below `ceiling`; `cube` is that of the local size, `fixed` edges are left out. */
+static void add_tet(bundle *b, const laves__measure *m, const laves__vec3 p[4], double cube, unsigned fixed, int c,
+                    double ceiling) {
   laves__vec3 n[4], unit[4];
   double per_length[4];
   laves__face_normals(p, n);
@@ -78,14 +79,14 @@ static void add_tet(bundle *b, const laves__measure *m, const laves__vec3 p[4], 
     const int i = laves__face_pair[e][0], j = laves__face_pair[e][1];
     const double d = v3_dot(unit[i], unit[j]);
     const double low = (1 + d) * m->low_scale, high = (1 - d) * m->high_scale;
-    if (low >= ceiling && high >= ceiling) continue;
+    if ((low >= ceiling && high >= ceiling) || laves__is_fixed(fixed, e)) continue;
     const laves__vec3 g = dot_gradient(p, c, unit, per_length, i, j, d);
     if (low < ceiling) add_term(b, low, v3_scale(g, m->low_scale));
     if (high < ceiling) add_term(b, high, v3_scale(g, -m->high_scale));
   }
   const double mean = laves__edge_sum(p) / 6;
   const double scale = LAVES__SQRT2 * m->length_scale / (mean * sqrt(mean)), length = scale * volume6;
-  if (length >= ceiling) return;
+  if (length >= ceiling || fixed) return;
   laves__vec3 spread = {0, 0, 0}; /* half the gradient of the sum of squared edges */
   for (int k = 0; k < 4; k++) spread = v3_add(spread, v3_sub(p[c], p[k]));
   add_term(b, length, v3_add(v3_scale(n[c], -scale), v3_scale(spread, -length / (2 * mean))));
@@ -98,12 +99,16 @@ static void fill_bundle(bundle *b, const laves__measure *m, const laves__layer *
     if (layer->quality[star->tet[i]] >= least + active_range) continue; /* none of its functions is below that */
     laves__vec3 p[4];
     laves__layer_points(layer, star->tet[i], p);
-    add_tet(b, m, p, laves__layer_cube(layer, star->tet[i]), laves__layer_corner(layer, star->tet[i], vertex),
-            least + active_range);
+    add_tet(b, m, p, laves__layer_cube(layer, star->tet[i]), laves__measure_fixed(m, layer, star->tet[i]),
+            laves__layer_corner(layer, star->tet[i], vertex), least + active_range);
   }
   if (layer->depth[vertex] == 0) {
     const laves__vec3 n = layer->normal[vertex];
-    for (int k = 0; k < b->count; k++) b->gradient[k] = v3_mad(b->gradient[k], n, -v3_dot(b->gradient[k], n));
+    const bool on_crease = laves__layer_hold(layer, vertex).kind == LAVES__HOLD_CREASE;
+    for (int k = 0; k < b->count; k++) {
+      const laves__vec3 along = v3_scale(n, v3_dot(b->gradient[k], n));
+      b->gradient[k] = on_crease ? along : v3_sub(b->gradient[k], along);
+    }
   }
   b->working_count = 1;
   b->weight[0] = 1;
@@ -194,7 +199,7 @@ static bool try_place(const laves__measure *m, laves__layer *layer, int32_t vert
   for (int i = 0; good && i < star->count; i++) {
     laves__vec3 p[4];
     laves__layer_points(layer, star->tet[i], p);
-    quality[i] = laves__quality(m, p, laves__layer_cube(layer, star->tet[i]));
+    quality[i] = laves__quality(m, p, laves__layer_cube(layer, star->tet[i]), laves__measure_fixed(m, layer, star->tet[i]));
     /* A volume well above rounding is positive without an exact test; coordinates are some thousands at most. */
     good = quality[i] > limit && (quality[i] > LAVES__FLAT || laves__orient3d(p[0], p[1], p[2], p[3]) > 0);
   }
@@ -211,8 +216,10 @@ bool laves__smooth_vertex(const laves__frame *frame, const laves__measure *m, do
                           laves__journal *journal) {
   const bool on_surface = layer->depth[vertex] == 0;
   const double scale = laves__layer_scale(layer, vertex), reach = surface_reach * scale;
+  const laves__hold hold = laves__layer_hold(layer, vertex);
   double tau = first_tau * scale * scale;
   bool moved = false;
+  if (on_surface && hold.kind == LAVES__HOLD_CORNER) return false;
   bundle b;
   for (int step = 0; step < STEPS_MAX; step++) {
     const double least = laves__star_quality(layer, vertex);
@@ -229,7 +236,7 @@ bool laves__smooth_vertex(const laves__frame *frame, const laves__measure *m, do
       bool there = true;
       if (on_surface) {
         laves__vec3 foot;
-        there = laves__frame_project(frame, place, reach, &hint, &foot, &normal) && v3_distance(foot, place) <= reach;
+        there = laves__frame_project_held(frame, hold, place, reach, &hint, &foot, &normal) && v3_distance(foot, place) <= reach;
         place = foot;
       }
       if (there && try_place(m, layer, vertex, place, least + accept_share * gain, journal)) {
@@ -252,8 +259,8 @@ bool laves__smooth_vertex(const laves__frame *frame, const laves__measure *m, do
 bool laves__settle_vertex(const laves__frame *frame, const laves__measure *m, double floor, laves__layer *layer, int32_t vertex) {
   uint32_t hint = layer->hint[vertex];
   laves__vec3 foot, normal;
-  if (!laves__frame_project(frame, layer->position[vertex], 2 * surface_reach * laves__layer_scale(layer, vertex), &hint, &foot,
-                            &normal))
+  if (!laves__frame_project_held(frame, laves__layer_hold(layer, vertex), layer->position[vertex],
+                                 2 * surface_reach * laves__layer_scale(layer, vertex), &hint, &foot, &normal))
     return false;
   const double least = laves__star_quality(layer, vertex);
   if (!try_place(m, layer, vertex, foot, least < floor ? least : floor, NULL)) return false;

@@ -1,0 +1,27 @@
+/* What topological operations must not do to features: the borders between patches stay chains of edges along creases. */
+#ifndef LAVES_IMPROVE_GUARD_H
+#define LAVES_IMPROVE_GUARD_H
+
+#include "domain/held.h"
+#include "mesh/layer.h"
+
+/* The patch of a face of boundary vertices, counter-clockwise from outside; LAVES__NO_FEATURE: none, or there are no features. */
+int32_t laves__layer_face_patch(const laves__frame *frame, const laves__layer *layer, const int32_t face[3]);
+
+/* Whether a boundary edge lies on a crease: its ends share one, and its two faces belong to different patches (or the same patch
+ * is on both sides of the crease). Then it must not go. */
+bool laves__is_crease_edge(const laves__frame *frame, const laves__layer *layer, int32_t a, int32_t b);
+
+/* What is wrong with features around a vertex: illegal faces, edges between patches whose ends share no crease, and the
+ * difference between the number of edges between patches and what it should be (none on a patch, two on a crease, as many as
+ * creases end at a corner). Zero where there are no features. */
+int laves__feature_faults(const laves__frame *frame, const laves__layer *layer, int32_t vertex);
+
+/* Whether a vertex may be merged into another along a boundary edge, as far as their holds tell. */
+bool laves__may_merge(const laves__frame *frame, const laves__layer *layer, int32_t gone, int32_t into);
+
+/* Edges of a tet on creases sharper than an angle that no other tet shares: the input fixes their dihedral angles. Bit e: edge e
+ * of laves__tet_edge. */
+unsigned laves__fixed_edges(const laves__features *features, double sharper_than, const laves__layer *layer, int32_t tet);
+
+#endif
