@@ -119,27 +119,6 @@ static laves_result choose_sizes(run *r) {
   return result;
 }
 
-/* What is sharp, or drawn. */
-static laves_result find_features(run *r) {
-  const laves_options *o = r->options;
-  const laves__feature_wish wish = {
-      .angle = o->feature_angle, .tags = o->feature_tags, .drawn = o->features, .size = r->frame.size};
-  begin_stage(r);
-  laves__features_free(&r->features);
-  const laves_result result = laves__features_find(r->context, &r->domain->oracle, &wish, &r->features, r->error);
-  r->frame.features = r->features.crease_count || r->features.corner_count ? &r->features : NULL;
-  if (r->frame.features) end_stage(r, "features");
-  return result;
-}
-
-static laves_result keep_features(run *r) {
-  if (!r->frame.features) return LAVES_OK;
-  begin_stage(r);
-  const laves_result result = laves__keep_features(&r->frame, &r->layer, &r->kept_features, r->error);
-  end_stage(r, "features");
-  return result;
-}
-
 static laves_result make_graded_background(run *r) {
   laves__demand demand;
   laves__graph_free(&r->graph);
@@ -207,12 +186,51 @@ static double filled_share(const run *r) {
 /* Whether stuffing may take the place of snapping. */
 static bool may_mend(const run *r) { return r->guarantee && r->options->method == LAVES_METHOD_AUTO; }
 
+/* Where snapping leaves more than this share, and this many, of the tets outside a window of 25 to 140 degrees, the solid is
+ * rougher than the size, and improvement would be long and in vain (models: at most 0.7 %, or a few; noise: 1.4 % and more). */
+static const laves__window rough_window = {.min_dihedral = 25, .max_dihedral = 140};
+static const double rough_share = 0.012;
+static const size_t rough_count = 250;
+
+/* Whether so much is bad after snapping that all is better made by stuffing at once. */
+static bool is_rough(const run *r) {
+  const size_t bad = laves__improve_outside(&rough_window, &r->layer);
+  return bad > rough_count && (double)bad > rough_share * (double)r->layer.tet_count;
+}
+
+/* What is sharp, or drawn. */
+static laves_result find_features(run *r) {
+  const laves_options *o = r->options;
+  const laves__feature_wish wish = {
+      .angle = o->feature_angle, .tags = o->feature_tags, .drawn = o->features, .size = r->frame.size};
+  begin_stage(r);
+  laves__features_free(&r->features);
+  const laves_result result = laves__features_find(r->context, &r->domain->oracle, &wish, &r->features, r->error);
+  r->frame.features = r->features.crease_count || r->features.corner_count ? &r->features : NULL;
+  if (r->frame.features) end_stage(r, "features");
+  return result;
+}
+
+static laves_result keep_features(run *r) {
+  if (r->stuffed.vertices > 0) return LAVES_OK;
+  laves_result result = find_features(r);
+  if (result == LAVES_OK && r->rough && !r->frame.features) return stuff_everything(r);
+  if (result != LAVES_OK || !r->frame.features) return result;
+  r->rough = false; /* features make it so */
+  begin_stage(r);
+  result = laves__keep_features(&r->frame, &r->layer, &r->kept_features, r->error);
+  end_stage(r, "features");
+  return result;
+}
+
 /* The boundary in the way that was asked for. Snapping needs walls of a size or so; where it loses too much of a thinner solid,
  * stuffing, which keeps every inner site, takes its place. */
 static laves_result conform(run *r) {
   if (r->options->method == LAVES_METHOD_STUFF) return stuff_everything(r);
   const laves_result result = snap(r);
-  return result == LAVES_OK && may_mend(r) && filled_share(r) < least_snapped ? stuff_everything(r) : result;
+  if (result != LAVES_OK || !may_mend(r)) return result;
+  r->rough = is_rough(r);
+  return filled_share(r) < least_snapped ? stuff_everything(r) : result;
 }
 
 static laves_result nothing_resolved(const run *r) {
@@ -272,12 +290,6 @@ static laves_result make_boundary(run *r) {
 static const double held_slack = 0.005;
 /* Where more than this share of the layer breaks the promise, small repairs are not tried. */
 static const double crowded = 0.001;
-/* Where snapping leaves more than this share, and this many, of the tets outside a window of 25 to 140 degrees, the solid is
- * rougher than the size, and improvement would be long and in vain (models: at most 0.7 %, or a few; noise: 1.4 % and more). */
-static const laves__window rough_window = {.min_dihedral = 25, .max_dihedral = 140};
-static const double rough_share = 0.012;
-static const size_t rough_count = 250;
-
 /* Improvement aims a little inside the asked window, so that the last digits of its iterations do not matter. */
 static laves_result improve(run *r) {
   if (!r->options->improve) return LAVES_OK;
@@ -292,12 +304,6 @@ static laves_result improve(run *r) {
   const laves_result result = laves__improve(&r->frame, &aim, &r->layer, r->error);
   end_stage(r, "improve");
   return result;
-}
-
-/* Whether so much is bad after snapping that all is better made by stuffing at once. */
-static bool is_rough(const run *r) {
-  const size_t bad = laves__improve_outside(&rough_window, &r->layer);
-  return bad > rough_count && (double)bad > rough_share * (double)r->layer.tet_count;
 }
 
 /* Where the promised window is broken, the boundary is made anew by stuffing: around the place, in a wider neighbourhood, in
@@ -320,15 +326,12 @@ static laves_result mend_promise(run *r) {
 
 /* The layer improved, and inside the promised window. */
 static laves_result improve_and_keep_promise(run *r) {
-  laves_result result = LAVES_OK;
-  r->rough = may_mend(r) && is_rough(r);
-  if (r->rough) result = stuff_everything(r);
-  if (result == LAVES_OK) result = improve(r);
+  laves_result result = improve(r);
   if (result == LAVES_OK && may_mend(r) && filled_share(r) == 0) { /* flat tets only, all peeled off */
     result = stuff_everything(r);
     if (result == LAVES_OK) result = improve(r);
   }
-  if (result == LAVES_OK && may_mend(r)) result = mend_promise(r);
+  if (result == LAVES_OK && may_mend(r) && !r->frame.features) result = mend_promise(r);
   return result;
 }
 
@@ -457,7 +460,6 @@ laves_result laves_generate(laves_context *context, const laves_domain *domain, 
   if (result == LAVES_OK) result = choose_sizes(&r);
   for (bool again = true; again && result == LAVES_OK;) {
     result = make_boundary(&r);
-    if (result == LAVES_OK) result = find_features(&r);
     if (result == LAVES_OK) result = keep_features(&r);
     if (result == LAVES_OK) result = improve_and_keep_promise(&r);
     if (result == LAVES_OK) result = make_mesh(&r, mesh);

@@ -263,10 +263,17 @@ static laves_result run_passes(work *w, int passes, int patience, laves_error *e
   return LAVES_OK;
 }
 
-static void settle_all(work *w) {
+static void settle_all(work *w, double floor) {
   for (size_t v = 0; v < w->layer->vertex_count; v++)
     if (w->layer->off_surface[v] && w->layer->star[v].count > 0)
-      laves__settle_vertex(w->frame, &w->measure, settle_floor, w->layer, (int32_t)v);
+      laves__settle_vertex(w->frame, &w->measure, floor, w->layer, (int32_t)v);
+}
+
+/* How many boundary vertices are not where they belong. */
+static size_t count_off(const work *w) {
+  size_t count = 0;
+  for (size_t v = 0; v < w->layer->vertex_count; v++) count += w->layer->off_surface[v] && w->layer->star[v].count > 0;
+  return count;
 }
 
 /* Takes away the flat tets of thin walls, until none of them can be. */
@@ -286,6 +293,11 @@ static bool is_crowded(const work *w, double share) {
   return bad > crowd_min && (double)bad > share * (double)w->layer->tet_count;
 }
 
+/* What moved without a look at quality may be smoothed again. */
+static void forget_smoothing(work *w) {
+  for (size_t t = 0; t < w->layer->tet_count; t++) w->stuck[t] = HUGE_VAL;
+}
+
 /* Patience is new for all that remains. */
 static void forget(work *w) {
   for (size_t t = 0; t < w->layer->tet_count; t++) {
@@ -300,7 +312,7 @@ static laves_result mend_tiling(work *w, bool brief, laves_error *error) {
   laves_result result = run_passes(w, 1, 1, error);
   const bool rough = brief || is_crowded(w, rough_share);
   if (result == LAVES_OK) result = run_passes(w, rough ? 1 : SMOOTH_PASSES - 1, 1, error);
-  if (result == LAVES_OK) settle_all(w);
+  if (result == LAVES_OK) settle_all(w, settle_floor);
   const bool crowded = is_crowded(w, crowd);
   w->rounds = 1;
   if (rough) w->admit = rough_admit;
@@ -318,7 +330,7 @@ static laves_result mend_tiling(work *w, bool brief, laves_error *error) {
  * those that are far outside, and for the others when they are few; where even the first are many, the solid is noise. */
 static laves_result mend_graded(work *w, laves_error *error) {
   laves_result result = run_passes(w, FLIP_PASSES, 2, error);
-  if (result == LAVES_OK) settle_all(w);
+  if (result == LAVES_OK) settle_all(w, settle_floor);
   const bool crowded = is_crowded(w, graded_crowd);
   w->rounds = 1;
   w->admit = far_outside;
@@ -344,6 +356,23 @@ static void leave_out_sharp(work *w, const laves__window *window) {
     if (f->crease[i].least_angle < w->measure.sharper_than) w->measure.sharp = f;
 }
 
+/* Creases and corners first: their vertices go where they belong, as far as tets allow, and smoothing makes room for the rest of
+ * the way. Then all is as on the tiling, with flips. */
+static laves_result mend_features(work *w, bool brief, laves_error *error) {
+  enum { ROUNDS = 6 };
+  static const double home_floor = 0.05; /* quality that coming home may cost: about 9 degrees */
+  laves_result result = run_passes(w, 1, 1, error);
+  for (int round = 0; result == LAVES_OK && round < ROUNDS && count_off(w) > 0; round++) {
+    settle_all(w, home_floor);
+    forget_smoothing(w);
+    w->rounds = round > 1;
+    result = run_passes(w, 1, 1, error);
+    forget(w);
+  }
+  w->rounds = 0;
+  return result == LAVES_OK ? mend_tiling(w, brief, error) : result;
+}
+
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {
   laves_context *context = layer->context;
   const bool graded = layer->scale != NULL;
@@ -366,8 +395,11 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
   if (!laves__parallel_for(context, NULL, layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
   if (result == LAVES_OK) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
-  if (result == LAVES_OK) result = graded ? mend_graded(&w, error) : mend_tiling(&w, window->brief, error);
-  if (result == LAVES_OK) settle_all(&w);
+  if (result == LAVES_OK)
+    result = graded        ? mend_graded(&w, error)
+             : layer->hold ? mend_features(&w, window->brief, error)
+                           : mend_tiling(&w, window->brief, error);
+  if (result == LAVES_OK) settle_all(&w, settle_floor);
 cleanup:
   for (int i = 0; w.journal && i < workers; i++) laves__journal_free(&w.journal[i]);
   laves__free(context, w.spare, layer->tet_count, sizeof *w.spare);

@@ -28,6 +28,7 @@ static const double active_range = 0.4;   /* functions this far above the least 
 static const double first_tau = 0.05;     /* local size^2; typical steps are a tenth of the size */
 static const double longest_step = 0.5;   /* local sizes */
 static const double surface_reach = 0.75; /* local sizes: how far a trial point may be from the surface */
+static const double feature_reach = 4;    /* local sizes: how far from its crease or corner a vertex may still be */
 static const double least_gain = 0.005;   /* foretold gains below this are not worth a trial */
 static const double accept_share = 0.1, good_share = 0.5, exact_enough = 0.02;
 
@@ -257,15 +258,22 @@ bool laves__smooth_vertex(const laves__frame *frame, const laves__measure *m, do
 }
 
 bool laves__settle_vertex(const laves__frame *frame, const laves__measure *m, double floor, laves__layer *layer, int32_t vertex) {
+  enum { PARTS = 3 }; /* the whole way, half of it, a quarter */
   uint32_t hint = layer->hint[vertex];
+  const laves__hold hold = laves__layer_hold(layer, vertex);
   laves__vec3 foot, normal;
-  if (!laves__frame_project_held(frame, laves__layer_hold(layer, vertex), layer->position[vertex],
-                                 2 * surface_reach * laves__layer_scale(layer, vertex), &hint, &foot, &normal))
+  const double reach = hold.kind >= LAVES__HOLD_CREASE ? feature_reach : 2 * surface_reach;
+  if (!laves__frame_project_held(frame, hold, layer->position[vertex], reach * laves__layer_scale(layer, vertex), &hint, &foot,
+                                 &normal))
     return false;
-  const double least = laves__star_quality(layer, vertex);
-  if (!try_place(m, layer, vertex, foot, least < floor ? least : floor, NULL)) return false;
-  layer->normal[vertex] = normal;
-  layer->hint[vertex] = hint;
-  layer->off_surface[vertex] = false;
-  return true;
+  const double least = laves__star_quality(layer, vertex), limit = least < floor ? least : floor;
+  for (int part = 0; part < PARTS; part++) {
+    const laves__vec3 place = part == 0 ? foot : v3_lerp(layer->position[vertex], foot, 1.0 / (1 << part));
+    if (!try_place(m, layer, vertex, place, limit, NULL)) continue;
+    layer->normal[vertex] = normal;
+    layer->hint[vertex] = hint;
+    layer->off_surface[vertex] = part > 0;
+    return true;
+  }
+  return false;
 }
