@@ -2,13 +2,15 @@
  *
  * In: the surface, which edges are creases (feature_edges.c).  Out: a patch for each face, segments, tips.
  *
- * Patches are what hangs together without crossing a crease. A tip is a point without creases whose faces' angles miss more
- * than a radian of the full turn, such as a cone's: it is a corner by itself, where the faces are large enough to mean it. */
+ * Patches are what hangs together without crossing a crease; feature_seam.c splits those that are on both its sides. A tip is a
+ * point without creases whose faces' angles miss more than a radian of the full turn, such as a cone's: it is a corner by itself,
+ * where the faces are large enough to mean it. */
 #include "domain/features.h"
 
 #include <string.h>
 
 #include "domain/feature_edges.h"
+#include "domain/feature_seam.h"
 
 static const double tip_defect = 1;  /* radians */
 static const double tip_edges = 0.5; /* sizes: an edge of a tip is longer */
@@ -16,6 +18,7 @@ static const double turn = 6.283185307179586, degrees = 57.29577951308232;
 
 typedef struct patches {
   const laves__surface *surface;
+  const laves__features *features;
   int32_t *of_face; /* [faces] */
   bool *on_border;  /* [points] of creases */
 } patches;
@@ -31,7 +34,7 @@ static int32_t patch_at(const void *self, laves__vec3 foot, uint32_t hint) {
 static bool project_patch(const void *self, int32_t patch, laves__vec3 point, double reach, uint32_t *hint, laves__vec3 *foot,
                           laves__vec3 *normal) {
   const patches *p = self;
-  const laves__part part = {p->of_face, patch, p->on_border};
+  const laves__part part = {p->of_face, patch, p->features, p->on_border};
   return laves__surface_project_part(p->surface, &part, point, reach, hint, foot, normal);
 }
 
@@ -133,8 +136,8 @@ static bool fill(const laves__feature_edges *e, patches *p, laves__features *fea
   features->patch_count = 0;
   features->dropped_count = e->dropped;
   features->joined_count = e->joined;
-  const bool done =
-      find_patches(e, p, &features->patch_count) && add_segments(e, p, lines, index) && add_tips(e, p, lines, index);
+  const bool done = find_patches(e, p, &features->patch_count) && laves__split_seams(e, p->of_face, features) &&
+                    add_segments(e, p, lines, index) && add_tips(e, p, lines, index);
   laves__free(e->context, index, points, sizeof *index);
   return done;
 }
@@ -148,6 +151,7 @@ laves_result laves__features_of_surface(const laves__feature_wish *wish, laves__
   bool done = p != NULL;
   if (done) {
     p->surface = s;
+    p->features = features;
     p->of_face = laves__alloc(context, s->face_count, sizeof *p->of_face);
     p->on_border = laves__alloc_zeroed(context, s->point_count, sizeof *p->on_border);
     done = p->of_face && p->on_border && laves__feature_edges_find(context, s, wish, &edges) && fill(&edges, p, features, lines);

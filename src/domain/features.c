@@ -78,6 +78,7 @@ void laves__features_free(laves__features *f) {
   laves__free(context, f->crease, f->crease_capacity, sizeof *f->crease);
   laves__free(context, f->corner, f->corner_capacity, sizeof *f->corner);
   laves__free(context, f->line, f->line_capacity, sizeof *f->line);
+  laves__free(context, f->joined, f->joined_capacity, sizeof *f->joined);
   laves__free(context, f->corner_crease, f->corner_crease_capacity, sizeof *f->corner_crease);
   laves__free(context, f->corner_patch, f->corner_patch_capacity, sizeof *f->corner_patch);
   laves__free(context, f->slot_crease, f->slot_count, sizeof *f->slot_crease);
@@ -87,6 +88,21 @@ void laves__features_free(laves__features *f) {
 }
 
 /* ---- questions ---- */
+
+bool laves__patches_join(const laves__features *f, int32_t a, int32_t b) {
+  if (a == b) return true;
+  if (f->joined_pairs == 0) return false;
+  const uint64_t pair = a < b ? (uint64_t)a << 32 | (uint32_t)b : (uint64_t)b << 32 | (uint32_t)a;
+  size_t low = 0, high = f->joined_pairs;
+  while (low < high) {
+    const size_t middle = (low + high) / 2;
+    if (f->joined[middle] < pair)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < f->joined_pairs && f->joined[low] == pair;
+}
 
 /* Which creases are meant. */
 typedef struct question {
@@ -102,10 +118,10 @@ static bool is_meant(const question *q, int32_t crease) {
   if (q->crease != LAVES__NO_FEATURE) return crease == q->crease;
   if (q->patch == LAVES__NO_FEATURE) return true;
   for (int side = 0; side < 2; side++) {
-    if (patch[side] != q->patch) continue;
+    if (!laves__patches_join(q->features, patch[side], q->patch)) continue;
     if (!q->others) return true;
     for (int i = 0; i < q->other_count; i++)
-      if (patch[1 - side] == q->others[i]) return true;
+      if (laves__patches_join(q->features, patch[1 - side], q->others[i])) return true;
   }
   return false;
 }

@@ -101,6 +101,9 @@ typedef struct laves__features {
   uint32_t *slot_crease, *slot_segment; /* [slot_count] the crease at each slot, and its segment's first point in `line` */
   size_t slot_count;
 
+  /* Patches that go together though they are two: pairs, the lesser << 32 | the greater, ascending. */
+  uint64_t *joined;
+  size_t joined_pairs, joined_capacity;
   bool has_seams; /* creases with one patch on both sides */
 
   size_t dropped_count; /* creases that were too short, or lay amid others that were: noise */
@@ -143,6 +146,9 @@ laves_result laves__features_drawn(const laves__feature_wish *wish, const laves_
                                    laves_error *error);
 
 /* ---- questions ---- */
+
+/* Whether vertices on two patches may share an edge: they are one, or parts of one that a crease has split. */
+bool laves__patches_join(const laves__features *features, int32_t a, int32_t b);
 
 /* The nearest point of a crease within reach, and the unit tangent along its points there. */
 bool laves__crease_project(const laves__features *features, int32_t crease, laves__vec3 point, double reach, laves__vec3 *foot,

@@ -32,7 +32,7 @@ bool laves__hold_has_patch(const laves__features *f, laves__hold hold, int32_t p
   const int32_t *list;
   const int count = laves__hold_patches(f, hold, room, &list);
   for (int i = 0; i < count; i++)
-    if (list[i] == patch) return true;
+    if (laves__patches_join(f, list[i], patch)) return true;
   return hold.kind == LAVES__HOLD_SURFACE;
 }
 
@@ -68,28 +68,36 @@ int32_t laves__holds_crease(const laves__features *f, laves__hold a, laves__hold
 
 enum { COMMON_MAX = 8 };
 
-/* The patches that three vertices have in common, at most COMMON_MAX. Where all are held to nothing: none, and *free. */
-static int common_patches(const laves__features *f, const laves__hold hold[3], int32_t common[COMMON_MAX], bool *free) {
-  int lead = -1, count = 0;
-  for (int i = 0; i < 3; i++)
-    if (hold[i].kind != LAVES__HOLD_SURFACE && (lead < 0 || hold[i].kind < hold[lead].kind)) lead = i;
-  *free = lead < 0;
-  if (lead < 0) return 0;
-  int32_t room[2];
-  const int32_t *list;
-  const int listed = laves__hold_patches(f, hold[lead], room, &list);
-  for (int k = 0; k < listed && count < COMMON_MAX; k++) {
-    bool all = true;
-    for (int i = 0; i < 3; i++) all &= laves__hold_has_patch(f, hold[i], list[k]);
-    if (all) common[count++] = list[k];
+typedef struct common {
+  int32_t patch[COMMON_MAX];
+  int count;
+  bool free; /* all three are held to nothing */
+} common;
+
+static void add_common(common *c, int32_t patch) {
+  for (int i = 0; i < c->count; i++)
+    if (c->patch[i] == patch) return;
+  if (c->count < COMMON_MAX) c->patch[c->count++] = patch;
+}
+
+/* The patches of any of three vertices that go with all three. */
+static common common_patches(const laves__features *f, const laves__hold hold[3]) {
+  common c = {.free = true};
+  for (int lead = 0; lead < 3; lead++) {
+    int32_t room[2];
+    const int32_t *list;
+    const int listed = laves__hold_patches(f, hold[lead], room, &list);
+    if (hold[lead].kind != LAVES__HOLD_SURFACE) c.free = false;
+    for (int k = 0; k < listed; k++)
+      if (laves__hold_has_patch(f, hold[(lead + 1) % 3], list[k]) && laves__hold_has_patch(f, hold[(lead + 2) % 3], list[k]))
+        add_common(&c, list[k]);
   }
-  return count;
+  return c;
 }
 
 bool laves__face_is_legal(const laves__features *f, const laves__hold hold[3]) {
-  int32_t common[COMMON_MAX];
-  bool free;
-  return common_patches(f, hold, common, &free) > 0 || free;
+  const common c = common_patches(f, hold);
+  return c.count > 0 || c.free;
 }
 
 /* How badly a face fits a patch. */
@@ -103,21 +111,19 @@ static double misfit(const laves__frame *frame, int32_t patch, const laves__vec3
 }
 
 int32_t laves__face_patch(const laves__frame *frame, const laves__hold hold[3], const laves__vec3 p[3], uint32_t hint) {
-  int32_t common[COMMON_MAX];
-  bool free;
-  const int count = common_patches(frame->features, hold, common, &free);
-  if (count == 0) return LAVES__NO_FEATURE;
-  if (count == 1) return common[0];
+  const common c = common_patches(frame->features, hold);
+  if (c.count == 0) return LAVES__NO_FEATURE;
+  if (c.count == 1) return c.patch[0];
   const laves__vec3 normal = v3_unit(v3_cross(v3_sub(p[1], p[0]), v3_sub(p[2], p[0])));
   int best = 0;
   double least = HUGE_VAL;
-  for (int i = 0; i < count; i++) {
-    const double m = misfit(frame, common[i], p, normal, hint);
+  for (int i = 0; i < c.count; i++) {
+    const double m = misfit(frame, c.patch[i], p, normal, hint);
     if (m >= least) continue;
     least = m;
     best = i;
   }
-  return common[best];
+  return c.patch[best];
 }
 
 /* ---- places ---- */

@@ -14,6 +14,7 @@
 
 /* The patches of a vertex, ascending but for a crease's two; `room` holds them where no list does. Returns how many. */
 int laves__hold_patches(const laves__features *features, laves__hold hold, int32_t room[2], const int32_t **patches);
+/* Whether a vertex goes with a patch: one of its own joins it, or it is held to nothing. */
 bool laves__hold_has_patch(const laves__features *features, laves__hold hold, int32_t patch);
 /* Whether two vertices have a patch in common; those that are held to nothing go with all. */
 bool laves__holds_meet(const laves__features *features, laves__hold a, laves__hold b);

@@ -255,9 +255,10 @@ bool laves__surface_bounds_at(const laves__surface *s, uint32_t slot, laves__vec
 
 /* Some of the faces. */
 typedef struct laves__part {
-  const int32_t *label;  /* [faces] */
-  int32_t wanted;        /* the label of those that are meant */
-  const bool *on_border; /* [points] where the part ends */
+  const int32_t *label; /* [faces] patches */
+  int32_t wanted;       /* those that join this one are meant */
+  const struct laves__features *features;
+  const bool *on_border; /* [points] where a crease is */
 } laves__part;
 
 /* As laves__oracle.project, on the part alone; the normal is that of its own faces. Caps of holes belong to no part. */

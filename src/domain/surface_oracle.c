@@ -219,9 +219,13 @@ typedef struct part_search {
   const laves__part *part;
 } part_search;
 
+static bool belongs(const laves__part *part, uint32_t slot) {
+  return laves__patches_join(part->features, part->label[slot], part->wanted);
+}
+
 static double measure_labelled(void *user, uint32_t slot, double distance2, laves__vec3 p) {
   const part_search *search = user;
-  if (search->part->label[slot] != search->part->wanted) return INFINITY;
+  if (!belongs(search->part, slot)) return INFINITY;
   return measure_part((void *)search->surface, slot, distance2, p);
 }
 
@@ -231,7 +235,7 @@ static laves__vec3 part_normal(const laves__surface *s, const laves__part *part,
   if (on >= LAVES__ON_CORNER)
     return part->on_border[s->faces[slot][on - LAVES__ON_CORNER]] ? s->face_normals[slot] : feature_normal(s, slot, on);
   const uint32_t half = s->across[3 * (size_t)slot + (size_t)(on - LAVES__ON_EDGE)];
-  return half != LAVES__NONE && part->label[half / 3] == part->wanted ? feature_normal(s, slot, on) : s->face_normals[slot];
+  return half != LAVES__NONE && belongs(part, half / 3) ? feature_normal(s, slot, on) : s->face_normals[slot];
 }
 
 /* The nearest face of all is tried first: mostly it is one of the part, and that search is the quicker one. */
@@ -240,7 +244,7 @@ bool laves__surface_project_part(const laves__surface *s, const laves__part *par
   const part_search search = {s, part};
   laves__nearest n = nearest_from(s, point, reach * reach, *hint);
   if (n.slot == LAVES__NONE) return false;
-  if (part->label[n.slot] != part->wanted || (s->needs_winding && (s->face_flags[n.slot] & LAVES__PARTIAL))) {
+  if (!belongs(part, n.slot) || (s->needs_winding && (s->face_flags[n.slot] & LAVES__PARTIAL))) {
     n = (laves__nearest){reach * reach, LAVES__NONE};
     laves__bvh_nearest_part(&s->bvh, point, measure_labelled, (void *)&search, &n);
     if (n.slot == LAVES__NONE) return false;

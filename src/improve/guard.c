@@ -42,6 +42,11 @@ static bool find_fan(const laves__frame *frame, const laves__layer *layer, int32
   return true;
 }
 
+/* Whether no crease lies between two faces. */
+static bool same_patch(const laves__frame *frame, int32_t a, int32_t b) {
+  return a == b || (a != LAVES__NO_FEATURE && b != LAVES__NO_FEATURE && laves__patches_join(frame->features, a, b));
+}
+
 bool laves__is_crease_edge(const laves__frame *frame, const laves__layer *layer, int32_t a, int32_t b) {
   if (!layer->hold) return false;
   const int32_t crease = laves__holds_crease(frame->features, layer->hold[a], layer->hold[b]);
@@ -54,7 +59,7 @@ bool laves__is_crease_edge(const laves__frame *frame, const laves__layer *layer,
     if (f.next[i] == b) left = f.patch[i];
     if (f.previous[i] == b) right = f.patch[i];
   }
-  return left != right;
+  return !same_patch(frame, left, right);
 }
 
 /* Ends of creases between different patches at a vertex. */
@@ -82,7 +87,7 @@ int laves__feature_faults(const laves__frame *frame, const laves__layer *layer, 
     int beyond = -1;
     for (int j = 0; j < f.count; j++)
       if (f.previous[j] == f.next[i]) beyond = j;
-    if (beyond < 0 || f.patch[beyond] == f.patch[i]) continue;
+    if (beyond < 0 || same_patch(frame, f.patch[beyond], f.patch[i])) continue;
     borders++;
     faults += laves__holds_crease(frame->features, hold, layer->hold[f.next[i]]) == LAVES__NO_FEATURE;
   }
