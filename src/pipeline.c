@@ -16,6 +16,7 @@
 #include "graded/graded.h"
 #include "graded/wishes.h"
 #include "improve/improve.h"
+#include "improve/release.h"
 #include "options.h"
 #include "snap/snap.h"
 #include "stuff/stuff.h"
@@ -34,6 +35,7 @@ typedef struct run {
   laves__octree tree;
   laves__features features;
   laves__kept_counts kept_features;
+  size_t released; /* vertices that were let go of for the sake of angles */
   laves__graph graph;
   laves__lattice lattice;
   laves__layer layer;
@@ -291,7 +293,7 @@ static const double held_slack = 0.005;
 /* Where more than this share of the layer breaks the promise, small repairs are not tried. */
 static const double crowded = 0.001;
 /* Improvement aims a little inside the asked window, so that the last digits of its iterations do not matter. */
-static laves_result improve(run *r) {
+static laves_result improve(run *r, bool again) {
   if (!r->options->improve) return LAVES_OK;
   begin_stage(r);
   const bool held = r->guarantee && laves__count_broken(r->guarantee, &r->layer) == 0;
@@ -300,6 +302,7 @@ static laves_result improve(run *r) {
                              .volume_length = r->options->volume_length > 0 ? r->options->volume_length + 0.05 : 0,
                              .held_min = held ? r->guarantee->min_dihedral + held_slack : 0,
                              .held_max = held ? r->guarantee->max_dihedral - held_slack : 180,
+                             .again = again,
                              .brief = r->rough};
   const laves_result result = laves__improve(&r->frame, &aim, &r->layer, r->error);
   end_stage(r, "improve");
@@ -318,18 +321,36 @@ static laves_result mend_promise(run *r) {
     laves__zone_around(r->guarantee, &r->layer, &r->lattice, reach[round < REACHES ? round : REACHES - 1]);
     if ((crowd || round == REACHES) && !laves__zone_components(&r->lattice)) return laves__fail_memory(r->context, r->error);
     laves_result result = stuff(r);
-    if (result == LAVES_OK) result = improve(r);
+    if (result == LAVES_OK) result = improve(r, false);
     if (result != LAVES_OK) return result;
   }
   return LAVES_OK;
 }
 
+/* Where features come closer than the size allows, angles go before them: step by step vertices are let go of, and improved
+ * again, until all is inside a wide window. */
+static const laves__window feature_window = {.min_dihedral = 25, .max_dihedral = 140};
+
+static laves_result release_features(run *r) {
+  laves_result result = LAVES_OK;
+  for (int what = LAVES__RELEASE_OFF; what < LAVES__RELEASES && result == LAVES_OK && r->options->improve; what++) {
+    const size_t released = laves__release_features(&r->frame, &feature_window, what, &r->layer);
+    r->released += released;
+    if (released > 0) result = improve(r, true);
+  }
+  if (result != LAVES_OK || !may_mend(r)) return result;
+  const laves__window promised = {.min_dihedral = r->guarantee->min_dihedral, .max_dihedral = r->guarantee->max_dihedral};
+  if (laves__improve_unforced(&r->frame, &promised, &r->layer) > 0) r->frame.features = NULL; /* none can be kept */
+  return LAVES_OK;
+}
+
 /* The layer improved, and inside the promised window. */
 static laves_result improve_and_keep_promise(run *r) {
-  laves_result result = improve(r);
+  laves_result result = improve(r, false);
+  if (result == LAVES_OK && r->frame.features) result = release_features(r);
   if (result == LAVES_OK && may_mend(r) && filled_share(r) == 0) { /* flat tets only, all peeled off */
     result = stuff_everything(r);
-    if (result == LAVES_OK) result = improve(r);
+    if (result == LAVES_OK) result = improve(r, false);
   }
   if (result == LAVES_OK && may_mend(r) && !r->frame.features) result = mend_promise(r);
   return result;

@@ -394,7 +394,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   for (size_t t = 0; t < layer->tet_count; t++) w.given_up[t] = w.stuck[t] = HUGE_VAL;
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
   if (!laves__parallel_for(context, NULL, layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
-  if (result == LAVES_OK) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
+  if (result == LAVES_OK && !window->again) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
   if (result == LAVES_OK)
     result = graded        ? mend_graded(&w, error)
              : layer->hold ? mend_features(&w, window->brief, error)

@@ -7,6 +7,7 @@
  *     contract.c   one edge: contraction, with everything undone when the worst does not rise
  *     flip.c       edges and faces: other tets between the same vertices, on graded backgrounds and where features are kept
  *     fit.c        how boundary faces lie to the surface
+ *     release.c    where creases and corners are given up for the sake of angles
  *     guard.c      what must not happen to creases and corners
  *     journal.h    what was changed, so that it can be undone
  *
@@ -23,6 +24,7 @@ typedef struct laves__window {
   double min_dihedral, max_dihedral; /* degrees */
   double volume_length;              /* 0: not asked */
   double held_min, held_max;         /* all tets are inside these angles and stay so; 0 and 180: nothing is held */
+  bool again;                        /* after a first time: without the Laplace start */
   bool brief;                        /* the solid is rougher than the size: few passes, and only the worst get more */
 } laves__window;
 

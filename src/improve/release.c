@@ -1,0 +1,47 @@
+/* Where creases come closer to one another than the size allows, no arrangement of their vertices has good angles. There some go:
+ * the surface is rounded at that place, and the report says so. */
+#include "improve/release.h"
+
+#include "improve/measure.h"
+
+static laves__measure measure_for(const laves__frame *frame, const laves__window *window, const laves__layer *layer) {
+  laves__measure m = laves__measure_of(window);
+  m.sharper_than = window->min_dihedral;
+  if (layer->hold) m.sharp = frame->features;
+  return m;
+}
+
+static bool is_outside(const laves__measure *m, const laves__layer *layer, size_t t) {
+  return layer->tet[t][0] >= 0 && laves__layer_quality(m, layer, (int32_t)t) < 1;
+}
+
+size_t laves__improve_unforced(const laves__frame *frame, const laves__window *window, const laves__layer *layer) {
+  const laves__measure m = measure_for(frame, window, layer);
+  size_t count = 0;
+  for (size_t t = 0; t < layer->tet_count; t++) count += is_outside(&m, layer, t);
+  return count;
+}
+
+static bool shall_go(const laves__layer *layer, int32_t v, laves__release what) {
+  if (layer->depth[v] != 0) return false;
+  const uint8_t kind = layer->hold[v].kind;
+  if (kind < LAVES__HOLD_CREASE) return false;
+  if (what == LAVES__RELEASE_OFF) return layer->off_surface[v];
+  return kind == LAVES__HOLD_CREASE || what == LAVES__RELEASE_CORNERS;
+}
+
+size_t laves__release_features(const laves__frame *frame, const laves__window *window, laves__release what, laves__layer *layer) {
+  const laves__measure m = measure_for(frame, window, layer);
+  size_t count = 0;
+  for (size_t t = 0; t < layer->tet_count; t++) {
+    if (!is_outside(&m, layer, t)) continue;
+    for (int k = 0; k < 4; k++) {
+      const int32_t v = layer->tet[t][k];
+      if (!shall_go(layer, v, what)) continue;
+      layer->hold[v] = (laves__hold){0, LAVES__HOLD_SURFACE};
+      layer->off_surface[v] = true; /* its normal is that of no surface: it is settled on to it */
+      count++;
+    }
+  }
+  return count;
+}

@@ -1,0 +1,22 @@
+/* Lets go of features where they cost too much. */
+#ifndef LAVES_IMPROVE_RELEASE_H
+#define LAVES_IMPROVE_RELEASE_H
+
+#include "improve/improve.h"
+
+/* How much is let go of, in growing order: vertices that never reached their place; those on creases; corners, too. */
+typedef enum laves__release {
+  LAVES__RELEASE_OFF,
+  LAVES__RELEASE_CREASES,
+  LAVES__RELEASE_CORNERS,
+  LAVES__RELEASES
+} laves__release;
+
+/* Frees boundary vertices of tets outside a window from their creases and corners: they then move anywhere on the surface. Angles
+ * that the input fixes do not count. Returns how many were freed. */
+size_t laves__release_features(const laves__frame *frame, const laves__window *window, laves__release what, laves__layer *layer);
+
+/* Tets outside a window, but for the angles that the input fixes at creases. */
+size_t laves__improve_unforced(const laves__frame *frame, const laves__window *window, const laves__layer *layer);
+
+#endif
