@@ -20,11 +20,13 @@ static const double sliver_height = 1e-4;
 enum { SLIVER_STEPS = 16, JOIN_STEPS = 64, AROUND_MAX = 256 };
 static const double around_range = 0.5;   /* sizes: how far from an edge normals are averaged */
 static const double confirm_share = 0.75; /* of the angle: what the means must still be apart */
+static const double surely_sharp = 70;    /* degrees: an edge that turns by more is sharp whatever is beside it */
+static const double facet_height = 2.5;   /* sizes */
 static const double blunt_share = 0.5;    /* of the angle: what a join may follow */
 static const double join_range = 2;       /* sizes: how long it may be */
 static const double join_cosine = 0.766;  /* it goes on within 40 degrees of its direction */
-static const double short_end = 1;        /* sizes: a dangling end below that goes */
-static const double short_group = 2.5;    /* sizes: as does a group of creases of less length in all */
+static const double short_end = 2;        /* sizes: a dangling end below that goes */
+static const double short_group = 4;      /* sizes: as does a group of creases of less length in all */
 
 static uint32_t start_of(const laves__feature_edges *e, uint32_t h) { return laves__half_start(e->surface, h); }
 static uint32_t end_of(const laves__feature_edges *e, uint32_t h) { return laves__half_end(e->surface, h); }
@@ -127,16 +129,48 @@ static void mean_normals(const laves__feature_edges *e, uint32_t h, uint32_t *st
   }
 }
 
+/* The largest turn, as the least cosine, at the other edges of the two faces beside an edge, those left out that are as sharp. */
+static double bend_beside(const laves__feature_edges *e, uint32_t h, double sharp) {
+  const uint32_t sides[2] = {h, e->surface->across[h]};
+  double least = 1;
+  for (int side = 0; side < 2; side++)
+    for (uint32_t k = 3 * (sides[side] / 3); k < 3 * (sides[side] / 3) + 3; k++) {
+      const uint32_t g = e->surface->across[k];
+      if (k == sides[side] || g == LAVES__NONE) continue;
+      const double cosine = v3_dot(e->normal[k / 3], e->normal[g / 3]);
+      if (cosine > sharp) least = fmin(least, cosine);
+    }
+  return least;
+}
+
+/* The height of a face over one of its edges. */
+static double height_over(const laves__feature_edges *e, uint32_t h) {
+  const uint32_t *p = e->surface->faces[h / 3];
+  const laves__vec3 a = e->surface->points[p[0]], b = e->surface->points[p[1]], c = e->surface->points[p[2]];
+  const double length = length_of(e, h);
+  return length > 0 ? v3_norm(v3_cross(v3_sub(b, a), v3_sub(c, a))) / length : 0;
+}
+
+/* Whether an edge is one of several that make a bend, a curved surface in coarse triangles: those beside it turn by more than
+ * half as much. Faces much larger than the size are facets, which the mesh shows. */
+static bool is_bend(const laves__feature_edges *e, uint32_t h, double sharp) {
+  if (fmin(height_over(e, h), height_over(e, e->surface->across[h])) > facet_height * e->wish->size) return false;
+  const double cosine = v3_dot(e->normal[h / 3], e->normal[e->surface->across[h] / 3]);
+  if (cosine < sharp) return false;
+  const double half = sqrt(0.5 * (1 + cosine)); /* the cosine of half the turn */
+  return bend_beside(e, h, sharp) < half;
+}
+
 /* Takes away marks that stand for the roughness of a surface finer than the size. */
 static void confirm(const laves__feature_edges *e, uint32_t *stamp) {
   if (!(e->wish->angle > 0)) return;
-  const double cosine = cosine_of(confirm_share * e->wish->angle);
+  const double cosine = cosine_of(confirm_share * e->wish->angle), sharp = cosine_of(surely_sharp);
   memset(stamp, 0xff, e->surface->face_count * sizeof *stamp);
   for (uint32_t h = 0; h < 3 * e->surface->face_count; h++) {
     laves__vec3 mean[2];
     if (!e->is_crease[h] || e->surface->across[h] < h || parts_tags(e, h)) continue;
     mean_normals(e, h, stamp, mean);
-    if (v3_dot(v3_unit(mean[0]), v3_unit(mean[1])) > cosine) set_crease(e, h, false);
+    if (v3_dot(v3_unit(mean[0]), v3_unit(mean[1])) > cosine || is_bend(e, h, sharp)) set_crease(e, h, false);
   }
 }
 
