@@ -293,11 +293,6 @@ static bool is_crowded(const work *w, double share) {
   return bad > crowd_min && (double)bad > share * (double)w->layer->tet_count;
 }
 
-/* What moved without a look at quality may be smoothed again. */
-static void forget_smoothing(work *w) {
-  for (size_t t = 0; t < w->layer->tet_count; t++) w->stuck[t] = HUGE_VAL;
-}
-
 /* Patience is new for all that remains. */
 static void forget(work *w) {
   for (size_t t = 0; t < w->layer->tet_count; t++) {
@@ -356,31 +351,46 @@ static void leave_out_sharp(work *w, const laves__window *window) {
     if (f->crease[i].least_angle < w->measure.sharper_than) w->measure.sharp = f;
 }
 
-/* Creases and corners first: their vertices go where they belong, as far as tets allow, and smoothing makes room for the rest of
- * the way. Then all is as on the tiling, with flips. */
+/* Creases and corners first: their vertices go where they belong, as far as tets allow, and smoothing and contraction make room
+ * for the rest of the way. Then all is as on the tiling, with flips. */
 static laves_result mend_features(work *w, bool brief, laves_error *error) {
-  enum { ROUNDS = 6 };
+  enum { ROUNDS = 6, SMOOTH_ROUNDS = 2 };
   static const double home_floor = 0.05; /* quality that coming home may cost: about 9 degrees */
   laves_result result = run_passes(w, 1, 1, error);
   for (int round = 0; result == LAVES_OK && round < ROUNDS && count_off(w) > 0; round++) {
     settle_all(w, home_floor);
-    forget_smoothing(w);
-    w->rounds = round > 1;
+    w->rounds = round >= SMOOTH_ROUNDS;
     result = run_passes(w, 1, 1, error);
-    forget(w);
   }
   w->rounds = 0;
   return result == LAVES_OK ? mend_tiling(w, brief, error) : result;
 }
 
+/* After features were let go of: only what is far outside, and what was freed, which is off the surface. */
+static laves_result mend_again(work *w, laves_error *error) {
+  settle_all(w, settle_floor);
+  w->admit = far_outside;
+  laves_result result = run_passes(w, SMOOTH_PASSES, 1, error);
+  w->rounds = THOROUGH_ROUNDS;
+  if (result == LAVES_OK) result = run_passes(w, CONTRACT_PASSES, 1, error);
+  if (result == LAVES_OK) peel_all(w);
+  return result;
+}
+
+/* The schedule for what the layer is. */
+static laves_result mend_all(work *w, const laves__window *window, laves_error *error) {
+  if (window->again) return mend_again(w, error);
+  if (w->layer->scale) return mend_graded(w, error);
+  return w->layer->hold ? mend_features(w, window->brief, error) : mend_tiling(w, window->brief, error);
+}
+
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {
   laves_context *context = layer->context;
-  const bool graded = layer->scale != NULL;
   work w = {.frame = frame, .measure = laves__measure_of(window), .target = 1, .admit = 1, .layer = layer};
   leave_out_sharp(&w, window);
   const int workers = laves__workers(context);
   laves_result result = LAVES_OK;
-  const bool flips = graded || layer->hold;
+  const bool flips = layer->scale || layer->hold;
   if (flips && !laves__layer_extend(layer, layer->tet_count / spare_share + spare_min)) return laves__fail_memory(context, error);
   if (flips) w.spare = laves__alloc(context, layer->tet_count, sizeof *w.spare);
   w.journal = laves__alloc_zeroed(context, (size_t)workers, sizeof *w.journal);
@@ -395,10 +405,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
   if (!laves__parallel_for(context, NULL, layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
   if (result == LAVES_OK && !window->again) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
-  if (result == LAVES_OK)
-    result = graded        ? mend_graded(&w, error)
-             : layer->hold ? mend_features(&w, window->brief, error)
-                           : mend_tiling(&w, window->brief, error);
+  if (result == LAVES_OK) result = mend_all(&w, window, error);
   if (result == LAVES_OK) settle_all(&w, settle_floor);
 cleanup:
   for (int i = 0; w.journal && i < workers; i++) laves__journal_free(&w.journal[i]);

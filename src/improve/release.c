@@ -27,7 +27,19 @@ static bool shall_go(const laves__layer *layer, int32_t v, laves__release what) 
   const uint8_t kind = layer->hold[v].kind;
   if (kind < LAVES__HOLD_CREASE) return false;
   if (what == LAVES__RELEASE_OFF) return layer->off_surface[v];
-  return kind == LAVES__HOLD_CREASE || what == LAVES__RELEASE_CORNERS;
+  return kind == LAVES__HOLD_CREASE || what >= LAVES__RELEASE_CORNERS;
+}
+
+static size_t release_tet(laves__layer *layer, size_t t, laves__release what) {
+  size_t count = 0;
+  for (int k = 0; k < 4; k++) {
+    const int32_t v = layer->tet[t][k];
+    if (!shall_go(layer, v, what)) continue;
+    layer->hold[v] = (laves__hold){0, LAVES__HOLD_SURFACE};
+    layer->off_surface[v] = true; /* its normal is that of no surface: it is settled on to it */
+    count++;
+  }
+  return count;
 }
 
 size_t laves__release_features(const laves__frame *frame, const laves__window *window, laves__release what, laves__layer *layer) {
@@ -35,12 +47,10 @@ size_t laves__release_features(const laves__frame *frame, const laves__window *w
   size_t count = 0;
   for (size_t t = 0; t < layer->tet_count; t++) {
     if (!is_outside(&m, layer, t)) continue;
-    for (int k = 0; k < 4; k++) {
-      const int32_t v = layer->tet[t][k];
-      if (!shall_go(layer, v, what)) continue;
-      layer->hold[v] = (laves__hold){0, LAVES__HOLD_SURFACE};
-      layer->off_surface[v] = true; /* its normal is that of no surface: it is settled on to it */
-      count++;
+    count += release_tet(layer, t, what);
+    for (int k = 0; k < 4 && what == LAVES__RELEASE_AROUND; k++) {
+      const laves__star *star = &layer->star[layer->tet[t][k]];
+      for (int i = 0; i < star->count; i++) count += release_tet(layer, (size_t)star->tet[i], what);
     }
   }
   return count;

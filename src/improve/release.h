@@ -4,11 +4,13 @@
 
 #include "improve/improve.h"
 
-/* How much is let go of, in growing order: vertices that never reached their place; those on creases; corners, too. */
+/* How much is let go of, in growing order: vertices that never reached their place; those on creases; corners, too; all that
+ * shares a tet with one of those. */
 typedef enum laves__release {
   LAVES__RELEASE_OFF,
   LAVES__RELEASE_CREASES,
   LAVES__RELEASE_CORNERS,
+  LAVES__RELEASE_AROUND,
   LAVES__RELEASES
 } laves__release;
 
