@@ -35,6 +35,8 @@ typedef struct run {
   laves__octree tree;
   laves__features features;
   laves__kept_counts kept_features;
+  bool *forced; /* [forced_count] tets whose angles the input fixes below the promise; NULL: none */
+  size_t forced_count;
   size_t released; /* vertices that were let go of for the sake of angles */
   laves__graph graph;
   laves__lattice lattice;
@@ -200,6 +202,22 @@ static bool is_rough(const run *r) {
   return bad > rough_count && (double)bad > rough_share * (double)r->layer.tet_count;
 }
 
+/* Tets whose angles the input fixes below what is promised; they are listed anew when asked for. */
+static laves_result find_forced(run *r) {
+  laves_context *context = r->context;
+  laves__free(context, r->forced, r->forced_count, sizeof *r->forced);
+  r->forced = NULL;
+  bool sharp = false;
+  for (size_t i = 0; r->layer.hold && i < r->features.crease_count; i++)
+    sharp |= r->features.crease[i].least_angle < r->guarantee->min_dihedral;
+  if (!sharp) return LAVES_OK;
+  r->forced_count = r->layer.tet_count;
+  r->forced = laves__alloc(context, r->forced_count, sizeof *r->forced);
+  if (!r->forced) return laves__fail_memory(context, r->error);
+  laves__mark_forced(&r->frame, r->guarantee->min_dihedral, &r->layer, r->forced);
+  return LAVES_OK;
+}
+
 /* What is sharp, or drawn. */
 static laves_result find_features(run *r) {
   const laves_options *o = r->options;
@@ -213,16 +231,29 @@ static laves_result find_features(run *r) {
   return result;
 }
 
+/* Boundary vertices are held to features, but for those where tets were cut. */
+static laves_result hold_features(run *r) {
+  bool *in_zone = NULL;
+  const size_t vertices = r->layer.vertex_count;
+  begin_stage(r);
+  if (r->stuffed.vertices > 0) {
+    in_zone = laves__alloc(r->context, vertices, sizeof *in_zone);
+    if (!in_zone) return laves__fail_memory(r->context, r->error);
+    laves__zone_vertices(&r->lattice, &r->layer, in_zone);
+  }
+  const laves_result result = laves__keep_features(&r->frame, in_zone, &r->layer, &r->kept_features, r->error);
+  laves__free(r->context, in_zone, vertices, sizeof *in_zone);
+  end_stage(r, "features");
+  return result;
+}
+
 static laves_result keep_features(run *r) {
-  if (r->stuffed.vertices > 0) return LAVES_OK;
+  if (r->stuffed.vertices > 0) return LAVES_OK; /* all is cut: by wish, or since the solid is too thin to be snapped */
   laves_result result = find_features(r);
   if (result == LAVES_OK && r->rough && !r->frame.features) return stuff_everything(r);
   if (result != LAVES_OK || !r->frame.features) return result;
   r->rough = false; /* features make it so */
-  begin_stage(r);
-  result = laves__keep_features(&r->frame, &r->layer, &r->kept_features, r->error);
-  end_stage(r, "features");
-  return result;
+  return hold_features(r);
 }
 
 /* The boundary in the way that was asked for. Snapping needs walls of a size or so; where it loses too much of a thinner solid,
@@ -296,7 +327,7 @@ static const double crowded = 0.001;
 static laves_result improve(run *r, bool again) {
   if (!r->options->improve) return LAVES_OK;
   begin_stage(r);
-  const bool held = r->guarantee && laves__count_broken(r->guarantee, &r->layer) == 0;
+  const bool held = r->guarantee && laves__count_broken(r->guarantee, &r->layer, NULL) == 0;
   const laves__window aim = {.min_dihedral = r->options->min_dihedral + 1.5,
                              .max_dihedral = fmin(r->options->max_dihedral - 3, 179),
                              .volume_length = r->options->volume_length > 0 ? r->options->volume_length + 0.05 : 0,
@@ -307,24 +338,6 @@ static laves_result improve(run *r, bool again) {
   const laves_result result = laves__improve(&r->frame, &aim, &r->layer, r->error);
   end_stage(r, "improve");
   return result;
-}
-
-/* Where the promised window is broken, the boundary is made anew by stuffing: around the place, in a wider neighbourhood, in
- * the end in all that hangs together with it, where the window is proved. */
-static laves_result mend_promise(run *r) {
-  enum { REACHES = 2 };
-  static const int reach[REACHES] = {1, 3}; /* cells */
-  for (int round = 0; round <= REACHES; round++) {
-    const size_t broken = laves__count_broken(r->guarantee, &r->layer);
-    if (broken == 0) return LAVES_OK;
-    const bool crowd = (double)broken > crowded * (double)r->layer.tet_count;
-    laves__zone_around(r->guarantee, &r->layer, &r->lattice, reach[round < REACHES ? round : REACHES - 1]);
-    if ((crowd || round == REACHES) && !laves__zone_components(&r->lattice)) return laves__fail_memory(r->context, r->error);
-    laves_result result = stuff(r);
-    if (result == LAVES_OK) result = improve(r, false);
-    if (result != LAVES_OK) return result;
-  }
-  return LAVES_OK;
 }
 
 /* Where features come closer than the size allows, angles go before them: step by step vertices are let go of, and improved
@@ -338,21 +351,43 @@ static laves_result release_features(run *r) {
     r->released += released;
     if (released > 0) result = improve(r, true);
   }
-  if (result != LAVES_OK || !may_mend(r)) return result;
-  const laves__window promised = {.min_dihedral = r->guarantee->min_dihedral, .max_dihedral = r->guarantee->max_dihedral};
-  if (laves__improve_unforced(&r->frame, &promised, &r->layer) > 0) r->frame.features = NULL; /* none can be kept */
+  return result;
+}
+
+static laves_result improve_layer(run *r) {
+  const laves_result result = improve(r, false);
+  return result == LAVES_OK && r->frame.features ? release_features(r) : result;
+}
+
+/* Where the promised window is broken, the boundary is made anew by stuffing: around the place, in a wider neighbourhood, in
+ * the end in all that hangs together with it, where the window is proved. */
+static laves_result mend_promise(run *r) {
+  enum { REACHES = 2 };
+  static const int reach[REACHES] = {1, 3}; /* cells */
+  for (int round = 0; round <= REACHES; round++) {
+    laves_result result = find_forced(r);
+    if (result != LAVES_OK) return result;
+    const size_t broken = laves__count_broken(r->guarantee, &r->layer, r->forced);
+    if (broken == 0) return LAVES_OK;
+    const bool crowd = (double)broken > crowded * (double)r->layer.tet_count;
+    laves__zone_around(r->guarantee, &r->layer, r->forced, reach[round < REACHES ? round : REACHES - 1], &r->lattice);
+    if ((crowd || round == REACHES) && !laves__zone_components(&r->lattice)) return laves__fail_memory(r->context, r->error);
+    result = stuff(r);
+    if (result == LAVES_OK && r->frame.features) result = hold_features(r);
+    if (result == LAVES_OK) result = improve_layer(r);
+    if (result != LAVES_OK) return result;
+  }
   return LAVES_OK;
 }
 
 /* The layer improved, and inside the promised window. */
 static laves_result improve_and_keep_promise(run *r) {
-  laves_result result = improve(r, false);
-  if (result == LAVES_OK && r->frame.features) result = release_features(r);
+  laves_result result = improve_layer(r);
   if (result == LAVES_OK && may_mend(r) && filled_share(r) == 0) { /* flat tets only, all peeled off */
     result = stuff_everything(r);
-    if (result == LAVES_OK) result = improve(r, false);
+    if (result == LAVES_OK) result = improve_layer(r);
   }
-  if (result == LAVES_OK && may_mend(r) && !r->frame.features) result = mend_promise(r);
+  if (result == LAVES_OK && may_mend(r)) result = mend_promise(r);
   return result;
 }
 
@@ -445,7 +480,7 @@ static laves_result judge(run *r, const laves_mesh *mesh) {
   if (report->outside_window)
     warn(r, "%zu tetrahedra are outside the asked window of %g to %g degrees and volume-length %g", report->outside_window,
          o->min_dihedral, o->max_dihedral, o->volume_length);
-  const size_t broken = r->guarantee ? laves__count_broken(r->guarantee, &r->layer) : 0;
+  const size_t broken = r->guarantee ? laves__count_broken(r->guarantee, &r->layer, r->forced) : 0;
   if (broken)
     warn(r, "%zu tetrahedra are outside the promised window of %g to %g degrees, which should not happen; please report it",
          broken, report->promised_min_dihedral, report->promised_max_dihedral);
@@ -493,6 +528,7 @@ laves_result laves_generate(laves_context *context, const laves_domain *domain, 
     laves_mesh_free(*mesh);
     *mesh = NULL;
   }
+  laves__free(context, r.forced, r.forced_count, sizeof *r.forced);
   laves__features_free(&r.features);
   laves__layer_free(&r.layer);
   laves__lattice_free(&r.lattice);

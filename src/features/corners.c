@@ -58,7 +58,7 @@ static bool build_tree(claims *c) {
   const laves__keeping *k = c->k;
   const laves__rim *rim = &k->rim;
   for (size_t v = 0; v < rim->vertex_count; v++)
-    if (rim->first[v + 1] > rim->first[v]) c->vertex[c->count++] = (int32_t)v;
+    if (rim->first[v + 1] > rim->first[v] && !(k->free && k->free[v])) c->vertex[c->count++] = (int32_t)v;
   uint32_t(*faces)[3] = laves__alloc(k->context, c->count, sizeof *faces);
   if (!faces) return false;
   for (size_t i = 0; i < c->count; i++) faces[i][0] = faces[i][1] = faces[i][2] = (uint32_t)c->vertex[i];

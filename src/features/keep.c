@@ -49,7 +49,7 @@ static void hold_to_patches(void *user, size_t begin, size_t end, int worker) {
     k->start[v] = k->layer->position[v];
     k->start_patch[v] = LAVES__NO_FEATURE;
     k->layer->hold[v] = (laves__hold){0, LAVES__HOLD_SURFACE};
-    if (k->layer->depth[v] != 0 || k->rim.first[v] == k->rim.first[v + 1]) continue;
+    if (k->layer->depth[v] != 0 || k->rim.first[v] == k->rim.first[v + 1] || (k->free && k->free[v])) continue;
     const int32_t patch = f->patch_at(f->self, laves__frame_to_local(k->frame, k->start[v]), k->layer->hint[v]);
     if (patch == LAVES__NO_FEATURE) continue;
     k->start_patch[v] = patch;
@@ -78,12 +78,12 @@ static laves_result keep(laves__keeping *k, laves__kept_counts *counts, laves_er
   return laves__cancelled(k->context, "features", 1) ? laves__fail_cancelled(error) : LAVES_OK;
 }
 
-laves_result laves__keep_features(const laves__frame *frame, laves__layer *layer, laves__kept_counts *counts,
+laves_result laves__keep_features(const laves__frame *frame, const bool *free, laves__layer *layer, laves__kept_counts *counts,
                                   laves_error *error) {
   laves_context *context = layer->context;
   const laves__features *f = frame->features;
   const size_t vertices = layer->vertex_count;
-  laves__keeping k = {.context = context, .frame = frame, .features = f, .layer = layer};
+  laves__keeping k = {.context = context, .frame = frame, .features = f, .layer = layer, .free = free};
   *counts = (laves__kept_counts){0};
   laves_result result = laves__rim_make(layer, &k.rim, error);
   k.start = laves__alloc(context, vertices, sizeof *k.start);

@@ -15,10 +15,12 @@ static bool is_outside(const laves__measure *m, const laves__layer *layer, size_
   return layer->tet[t][0] >= 0 && laves__layer_quality(m, layer, (int32_t)t) < 1;
 }
 
-size_t laves__improve_unforced(const laves__frame *frame, const laves__window *window, const laves__layer *layer) {
-  const laves__measure m = measure_for(frame, window, layer);
+size_t laves__mark_forced(const laves__frame *frame, double sharper_than, const laves__layer *layer, bool *forced) {
   size_t count = 0;
-  for (size_t t = 0; t < layer->tet_count; t++) count += is_outside(&m, layer, t);
+  for (size_t t = 0; t < layer->tet_count; t++) {
+    forced[t] = layer->hold && layer->tet[t][0] >= 0 && laves__fixed_edges(frame->features, sharper_than, layer, (int32_t)t);
+    count += forced[t];
+  }
   return count;
 }
 

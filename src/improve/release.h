@@ -18,7 +18,7 @@ typedef enum laves__release {
  * that the input fixes do not count. Returns how many were freed. */
 size_t laves__release_features(const laves__frame *frame, const laves__window *window, laves__release what, laves__layer *layer);
 
-/* Tets outside a window, but for the angles that the input fixes at creases. */
-size_t laves__improve_unforced(const laves__frame *frame, const laves__window *window, const laves__layer *layer);
+/* Tets at creases sharper than an angle, which fixes theirs: forced[layer->tet_count]. Returns how many there are. */
+size_t laves__mark_forced(const laves__frame *frame, double sharper_than, const laves__layer *layer, bool *forced);
 
 #endif

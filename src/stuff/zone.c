@@ -20,10 +20,10 @@ static laves__guarantee promised_window(const laves__guarantee *g) {
   return promised;
 }
 
-size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer *layer) {
+size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced) {
   const laves__guarantee promised = promised_window(guarantee);
   size_t count = 0;
-  for (size_t t = 0; t < layer->tet_count; t++) count += is_broken(layer, t, &promised);
+  for (size_t t = 0; t < layer->tet_count; t++) count += is_broken(layer, t, &promised) && !(forced && forced[t]);
   return count;
 }
 
@@ -38,13 +38,22 @@ static void zone_cells(laves__lattice *lattice, laves__vec3 centre, int reach) {
       }
 }
 
-void laves__zone_around(const laves__guarantee *guarantee, const laves__layer *layer, laves__lattice *lattice, int reach) {
+void laves__zone_around(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced, int reach,
+                        laves__lattice *lattice) {
   const laves__guarantee promised = promised_window(guarantee);
   for (size_t t = 0; t < layer->tet_count; t++) {
-    if (!is_broken(layer, t, &promised)) continue;
+    if (!is_broken(layer, t, &promised) || (forced && forced[t])) continue;
     laves__vec3 p[4];
     laves__layer_points(layer, (int32_t)t, p);
     zone_cells(lattice, v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25), reach);
+  }
+}
+
+void laves__zone_vertices(const laves__lattice *lattice, const laves__layer *layer, bool *in_zone) {
+  for (size_t v = 0; v < layer->vertex_count; v++) {
+    const uint32_t id = layer->origin[v];
+    in_zone[v] = layer->depth[v] == 0 &&
+                 (id == LAVES__NO_ORIGIN || (lattice->record[id / LAVES__C15_SITES].zone >> id % LAVES__C15_SITES & 1));
   }
 }
 

@@ -6,11 +6,16 @@
 #include "mesh/layer.h"
 #include "stuff/rule.h"
 
-/* How many tets of the layer are outside the promised window. */
-size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer *layer);
+/* How many tets of the layer are outside the promised window. `forced`: a flag for each tet whose angles the input fixes, which
+ * do not count; NULL: none. */
+size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced);
 
 /* Puts in the zone all sites of the cells within `reach` cells of each tet outside the promised window. */
-void laves__zone_around(const laves__guarantee *guarantee, const laves__layer *layer, laves__lattice *lattice, int reach);
+void laves__zone_around(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced, int reach,
+                        laves__lattice *lattice);
+
+/* Which vertices of the layer stand where tets are cut: in_zone[layer->vertex_count]. */
+void laves__zone_vertices(const laves__lattice *lattice, const laves__layer *layer, bool *in_zone);
 
 /* Puts in the zone whole components: every site of the records that are joined to a zone by neighbouring cells. No tet then
  * has corners both in the zone and beyond it. False when memory is short. */
