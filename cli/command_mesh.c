@@ -207,6 +207,19 @@ static void write_options(json *out, const settings *given, const laves_options 
   json_close(out);
 }
 
+static void write_features(json *out, const laves_report *report) {
+  json_open_object(out, "features");
+  json_integer(out, "creases", (int64_t)report->creases);
+  json_integer(out, "corners", (int64_t)report->corners);
+  json_integer(out, "corners_kept", (int64_t)report->corners_kept);
+  json_number(out, "crease_length", report->crease_length);
+  json_number(out, "crease_kept", report->crease_kept);
+  json_integer(out, "released", (int64_t)report->features_released);
+  json_integer(out, "dropped", (int64_t)report->creases_dropped);
+  json_integer(out, "joined", (int64_t)report->creases_joined);
+  json_close(out);
+}
+
 static void write_report(json *out, const mesh_run *all) {
   const laves_report *report = &all->report;
   char hash[33];
@@ -223,6 +236,7 @@ static void write_report(json *out, const mesh_run *all) {
   json_integer(out, "stuffed_vertices", (int64_t)report->stuffed_vertices);
   json_integer(out, "relaxed_vertices", (int64_t)report->relaxed_vertices);
   json_number(out, "relaxed_max", report->relaxed_max);
+  write_features(out, report);
 }
 
 static void mesh_json(json *out, const session *run, const void *facts) {

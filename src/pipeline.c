@@ -13,6 +13,7 @@
 #include "domain/features.h"
 #include "estimate.h"
 #include "features/keep.h"
+#include "features/tally.h"
 #include "graded/graded.h"
 #include "graded/wishes.h"
 #include "improve/improve.h"
@@ -409,14 +410,14 @@ static laves_result make_mesh(run *r, laves_mesh **mesh) {
   return result;
 }
 
-/* Where sizes vary improvement may cost some per cent of a count that was asked for; then all is made again, once, for a count
- * that is larger by as much. */
+/* Where sizes vary or features are kept improvement may cost some per cent of a count that was asked for; then all is made again,
+ * once, for a count that is larger by as much. */
 static laves_result count_again(run *r, laves_mesh **mesh, bool *again) {
   static const double tolerance = 0.02;
   const laves_options *o = r->options;
   const double wished = o->tet_target ? (double)o->tet_target : (double)o->vertex_target;
   const double got = o->tet_target ? (double)(*mesh)->tet_count : (double)(*mesh)->vertex_count;
-  *again = r->sizes && has_target(o) && !r->recounted && fabs(got / wished - 1) > tolerance;
+  *again = (r->sizes || r->frame.features) && has_target(o) && !r->recounted && fabs(got / wished - 1) > tolerance;
   if (!*again) return LAVES_OK;
   r->recounted = true;
   r->kept = got / r->counted;
@@ -447,6 +448,32 @@ static laves_result refine_where_distant(run *r, laves_mesh **mesh, bool *again)
     *mesh = NULL;
   }
   return result;
+}
+
+/* What of the features is kept. */
+static laves_result judge_features(run *r) {
+  laves_report *report = r->report;
+  laves__feature_tally tally;
+  report->creases_dropped = r->features.dropped_count;
+  report->creases_joined = r->features.joined_count;
+  if (!r->frame.features) return LAVES_OK;
+  const laves_result result = laves__tally_features(&r->frame, &r->layer, &tally, r->error);
+  if (result != LAVES_OK) return result;
+  report->creases = r->features.crease_count;
+  report->corners = tally.corners;
+  report->corners_kept = tally.kept_corners;
+  report->crease_length = tally.length * r->frame.size;
+  report->crease_kept = tally.kept_length * r->frame.size;
+  report->features_released = r->released;
+  if (!tally.has_lost) return LAVES_OK;
+  const laves__vec3 place = laves__frame_to_input(&r->frame, tally.lost);
+  warn(
+      r,
+      "%.2f %% of the creases' length and %zu of %zu corners are kept; elsewhere they are closer to one another than the size of "
+      "%g allows, as near (%g, %g, %g)",
+      100 * tally.kept_length / fmax(tally.length, 1e-300), tally.kept_corners, tally.corners, r->frame.size, place.x, place.y,
+      place.z);
+  return LAVES_OK;
 }
 
 /* The last word on targets: what was asked and is not there. */
@@ -522,6 +549,7 @@ laves_result laves_generate(laves_context *context, const laves_domain *domain, 
     if (result == LAVES_OK) result = refine_where_distant(&r, mesh, &again);
     if (result == LAVES_OK && !again) result = count_again(&r, mesh, &again);
   }
+  if (result == LAVES_OK) result = judge_features(&r);
   if (result == LAVES_OK) result = judge(&r, *mesh);
 
   if (result != LAVES_OK && result != LAVES_TARGET_MISSED) {

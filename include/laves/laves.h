@@ -358,6 +358,14 @@ typedef struct laves_report {
   size_t stuffed_vertices;  ///< boundary vertices of the places that were made by stuffing, before improvement
   size_t relaxed_vertices;  ///< those of them that a guarantee above 14.4 degrees moved off the surface
   double relaxed_max;       ///< the furthest such move, units of the input
+  // Features that were to be kept (docs/features.md); all zero where there are none.
+  size_t creases, corners;   ///< of the solid, at this size
+  size_t corners_kept;       ///< that are vertices of the mesh at exactly their place
+  double crease_length;      ///< of all creases, units of the input
+  double crease_kept;        ///< of the boundary edges that lie along them; chords of curved creases are a little shorter
+  size_t features_released;  ///< vertices that were let go of where features come closer to one another than the size
+  size_t creases_dropped;    ///< that were too short for the size, or roughness of the surface
+  size_t creases_joined;     ///< gaps between creases that were closed
   int warning_count;
   char warnings[LAVES_WARNING_CAPACITY][240];
 } laves_report;

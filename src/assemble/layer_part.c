@@ -1,6 +1,8 @@
 /* Which of the layer's vertices live, their numbers, and the boundary with its tags. */
 #include "assemble/layer_part.h"
 
+#include "domain/features.h"
+
 #include <string.h>
 
 static bool is_alive(const laves__layer *layer, int32_t vertex) {
@@ -115,6 +117,16 @@ static void write_copies(const laves__layer_part *part, laves_mesh *mesh) {
   }
 }
 
+/* Corners stand where the domain says, to the last bit. */
+static void write_corners(const laves__layer_part *part, laves_mesh *mesh) {
+  const laves__layer *layer = part->layer;
+  for (size_t v = 0; layer->hold && v < layer->vertex_count; v++) {
+    if (layer->depth[v] != 0 || part->id[v] < 0 || layer->off_surface[v] || layer->hold[v].kind != LAVES__HOLD_CORNER) continue;
+    const laves__frame *frame = part->frame;
+    mesh->points[part->id[v]] = v3_add(frame->oracle->origin, frame->features->corner[layer->hold[v].id].position);
+  }
+}
+
 static void write_faces(const laves__layer_part *part, laves_mesh *mesh) {
   size_t next = 0;
   for (size_t t = 0; t < part->layer->tet_count; t++)
@@ -166,6 +178,7 @@ static laves_result write_tags(const laves__layer_part *part, laves_mesh *mesh, 
 laves_result laves__layer_part_write(const laves__layer_part *part, size_t first_tet, laves_mesh *mesh, laves_error *error) {
   write_tets(part, first_tet, mesh);
   write_copies(part, mesh);
+  write_corners(part, mesh);
   write_faces(part, mesh);
   return mesh->face_tags ? write_tags(part, mesh, error) : LAVES_OK;
 }
