@@ -99,16 +99,16 @@ double laves__corner_cover(laves__vec3 a, laves__vec3 b, laves__vec3 c);
 struct laves__boundary_tree;
 
 /* A sample of a surface, and the share of the surface that it stands for, up to a common factor. */
-typedef struct laves__surface_sample {
+typedef struct laves__domain_sample {
   laves__vec3 point;
   double weight;
-} laves__surface_sample;
+} laves__domain_sample;
 
 /* Samples of a domain's surface (local coordinates), about `spacing` apart times the power of two that the tree tells of the
  * edges near by, for domains that offer none themselves. Returns how many, at most `capacity`; none when the search would
  * cost too much at that spacing. */
 size_t laves__sample_surface(laves_context *context, const laves__oracle *oracle, const struct laves__boundary_tree *tree,
-                             double spacing, laves__surface_sample *samples, size_t capacity);
+                             double spacing, laves__domain_sample *samples, size_t capacity);
 
 /* The smallest radius of curvature of the domain's surface within about `reach` of a point (coordinates of the mesh),
  * seen at that scale; INFINITY where it is flat or absent. */
