@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "feature_report.h"
 #include "input.h"
 #include "output.h"
 #include "session.h"
@@ -26,6 +27,7 @@ typedef struct check_run {
   laves_certificate certificate;
   laves_options window; /* only its window is used */
   place_list outside, distant;
+  feature_report features;
   bool has_check;
   laves_difference differences[DIFFERENCES_SAID];
   size_t difference_count; /* may exceed what was kept */
@@ -165,6 +167,7 @@ static void say_check(const session *run, const check_run *all) {
   statement_say(&all->certificate, true);
   say_window(all);
   say_distant(all);
+  if (all->features.made) feature_report_say(&all->features);
   say_verified(run, all);
   if (run->given->verbose) {
     text_buffer read, checked;
@@ -216,6 +219,7 @@ static void check_json(json *out, const session *run, const void *facts) {
     json_integer(out, "distant", (int64_t)all->distant.found);
     write_places(out, "distant_places", &all->distant);
   }
+  feature_report_write_json(out, &all->features);
   json_open_object(out, "seconds");
   json_number(out, "read", all->read_seconds);
   json_number(out, "check", all->check_seconds);
@@ -232,6 +236,8 @@ static laves_result check_steps(session *run, check_run *all) {
   }
   if (given->volume_length >= 0) all->window.volume_length = given->volume_length;
   const char *write_to = given->write_certificate;
+  if (given->check_features && !given->surface)
+    return session_fail(run, LAVES_ERROR_OPTION, "--features needs --surface, the solid whose creases the mesh should keep");
   laves_result result = outputs_check_json(run, given->input);
   if (result == LAVES_OK && write_to) result = outputs_check_text(run, write_to, given->input);
   if (result == LAVES_OK) result = read_mesh(run, all);
@@ -241,6 +247,8 @@ static laves_result check_steps(session *run, check_run *all) {
   const double start = progress_now();
   result = certify(run, all);
   if (result == LAVES_OK) result = find_places(run, all);
+  if (result == LAVES_OK && given->check_features)
+    result = feature_report_make(run, all->mesh, all->surface.domain, &all->features);
   if (result == LAVES_OK) result = verify(run, all);
   all->check_seconds = progress_now() - start;
   all->has_check = result == LAVES_OK;
@@ -249,7 +257,7 @@ static laves_result check_steps(session *run, check_run *all) {
 
   if (session_speaks(run)) say_check(run, all);
   const bool wished = given->window.given || given->volume_length >= 0;
-  const bool missed = (wished && all->outside.found > 0) || all->difference_count > 0;
+  const bool missed = (wished && all->outside.found > 0) || all->difference_count > 0 || feature_report_misses(&all->features);
   return !all->certificate.check.valid || missed ? LAVES_TARGET_MISSED : LAVES_OK;
 }
 
@@ -261,6 +269,7 @@ int command_check(const settings *given) {
   session_write_json(&run, &result, check_json, &all);
   free(all.outside.places);
   free(all.distant.places);
+  free(all.features.places);
   laves_mesh_free(all.mesh);
   laves_domain_free(all.surface.domain);
   return session_close(&run, result);

@@ -591,7 +591,7 @@ LAVES_API laves_result laves_check_features(laves_context *context, const laves_
 
 /* ---- certificate -------------------------------------------------------------------------------------------------- */
 
-enum { LAVES_HASH_CAPACITY = 65, LAVES_NAME_CAPACITY = 256, LAVES_EXCEPTION_CAPACITY = 128 };
+enum { LAVES_HASH_CAPACITY = 65, LAVES_NAME_CAPACITY = 256, LAVES_EXCEPTION_CAPACITY = 192 };
 
 /// What can be out of order: X(name, key in JSON, phrase). The value of an exception is the angle in degrees (or the
 /// volume-length ratio, below 1), the distance, or the thickness that its kind speaks of, else NAN.
@@ -603,7 +603,10 @@ enum { LAVES_HASH_CAPACITY = 65, LAVES_NAME_CAPACITY = 256, LAVES_EXCEPTION_CAPA
   X(OUTSIDE_ASKED, "outside_asked", "tetrahedra outside the asked window")            \
   X(DISTANT, "distant", "places where mesh and surface are over 0.3 edges apart")     \
   X(OFF_SURFACE, "off_surface", "boundary vertices off the surface")                  \
-  X(THIN, "thin", "places where the solid is thinner than the size")
+  X(THIN, "thin", "places where the solid is thinner than the size")                  \
+  X(CREASE_LOST, "crease_lost", "creases that are not kept")                          \
+  X(CORNER_LOST, "corner_lost", "corners that are no vertex")                         \
+  X(SHARP_INPUT, "sharp_input", "creases sharper than the window")
 
 typedef enum laves_exception_kind {
 #define LAVES_EXCEPTION_ENUM(name, key, text) LAVES_EXCEPTION_##name,
@@ -640,6 +643,8 @@ typedef struct laves_exception {
   double limit;             ///< that it passes; NAN: none
   int64_t index;            ///< of the tetrahedron or vertex; -1: neither
   double curvature_radius;  ///< of the surface near by, as in laves_place; NAN: not known
+  double crease_angle;  ///< least angle inside the solid, degrees, of the creases on which an edge of that tetrahedron lies, or
+                        ///< of the crease that is meant; NAN: none, or features were not looked for
 } laves_exception;
 
 /// What a mesh is, recomputed from its arrays: filled by laves_certify(), or read from a file.
@@ -674,9 +679,15 @@ typedef struct laves_certificate {
   bool promise_holds;  ///< every tet is inside the promised window by more than the margin; true without a promise
   double asked_min_dihedral, asked_max_dihedral, asked_volume_length;
 
-  double distance_asked;       ///< the distance from which on places count as DISTANT; 0: not looked for. Where the boundary's
-                               ///< edges are nearest to twice, half, ... the mean edge, it is so many times as much
-  double off_surface_asked;    ///< the distance from which on boundary vertices count as OFF_SURFACE, likewise; 0: not looked for
+  double distance_asked;     ///< the distance from which on places count as DISTANT; 0: not looked for. Where the boundary's
+                             ///< edges are nearest to twice, half, ... the mean edge, it is so many times as much
+  double off_surface_asked;  ///< the distance from which on boundary vertices count as OFF_SURFACE, likewise; 0: not looked for
+  bool has_features;         ///< features were looked for, and the solid has some; of `features`, a file keeps what
+                             ///< docs/certificate.md lists
+  bool features_tags;        ///< edges between tags were looked for too
+  bool features_drawn;       ///< points and lines of the caller's as well, so that nobody else can look for the same
+  laves_feature_check features;
+
   char to_surface_reason[96];  ///< why an upper bound of the distance is not known; empty where it is
   char from_surface_reason[96];
 
@@ -694,6 +705,11 @@ typedef struct laves_certify_options {
   const laves_report *report;    ///< the report of that call, for its promise; given with options
   double promised_min_dihedral, promised_max_dihedral;  ///< where there is no report; default 0, 180: nothing promised
   double min_dihedral, max_dihedral, volume_length;     ///< asked window where there are no options; default as there
+  // Features to be measured where there are no options (with them: those that they ask for). They need the domain and
+  // `distances`.
+  double feature_angle;  ///< as laves_options.feature_angle; default 0: none are looked for
+  bool feature_tags;     ///< as laves_options.feature_tags
+  double feature_size;   ///< as laves_feature_options.size; default 0
   uint32_t cookie;
 } laves_certify_options;
 

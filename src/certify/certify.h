@@ -138,9 +138,13 @@ laves_result laves__mesh_digest(laves_context *context, const laves_mesh *mesh, 
 laves_result laves__find_tiles(laves_context *context, const laves_mesh *mesh, laves_certificate *certificate,
                                laves_error *error);
 
-/* Fills the exceptions, and what they say of the windows. The certificate's check, windows and size are filled. */
+struct laves__feature_findings;
+
+/* Fills the exceptions, and what they say of the windows. The certificate's check, windows, features and size are filled.
+ * features: NULL: none were looked for. */
 laves_result laves__list_exceptions(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
-                                    const laves__survey *survey, laves_certificate *certificate, laves_error *error);
+                                    const laves__survey *survey, const struct laves__feature_findings *features,
+                                    laves_certificate *certificate, laves_error *error);
 
 /* ---- tets and boundaries ---- */
 
