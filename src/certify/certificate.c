@@ -152,8 +152,9 @@ static laves_result measure_features(laves_context *context, const laves_mesh *m
   const laves_feature_options asked = asked_features(options);
   if (!options->domain || !options->distances || boundary->count == 0) return LAVES_OK;
   if (!(asked.angle > 0) && !asked.tags && !asked.features) return LAVES_OK;
-  laves_result result =
-      laves__find_features_for(context, mesh, boundary, &options->domain->oracle, &asked, &part->features, error);
+  laves_result result = laves__check_feature_options(&asked, error);
+  if (result == LAVES_OK)
+    result = laves__find_features_for(context, mesh, boundary, &options->domain->oracle, &asked, &part->features, error);
   if (result != LAVES_OK || part->features.crease_count + part->features.corner_count == 0) return result;
   result = laves__check_features_of(context, mesh, boundary, &part->features, &asked, &c->features, &part->findings, error);
   c->has_features = result == LAVES_OK;

@@ -200,7 +200,7 @@ void laves__feature_findings_free(laves__feature_findings *f) {
 
 /* ---- the public call ---- */
 
-static laves_result check_options(const laves_feature_options *o, laves_error *error) {
+laves_result laves__check_feature_options(const laves_feature_options *o, laves_error *error) {
   if (o->cookie != feature_cookie)
     return laves__fail(error, LAVES_ERROR_OPTION, "the options do not come from laves_feature_options_default()");
   if (o->angle != 0 && !(o->angle >= 1 && o->angle <= 179))
@@ -253,7 +253,7 @@ laves_result laves_check_features(laves_context *context, const laves_mesh *mesh
   *count = 0;
   memset(check, 0, sizeof *check);
   laves__progress_reset(context);
-  laves_result result = check_options(options, error);
+  laves_result result = laves__check_feature_options(options, error);
   if (result == LAVES_OK) result = laves__find_boundary(context, mesh, &boundary, error);
   if (result == LAVES_OK && boundary.count == 0)
     result = laves__fail(error, LAVES_ERROR_INPUT, "the mesh has no boundary, so there is nothing to hold features against");

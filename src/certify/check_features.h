@@ -49,6 +49,9 @@ typedef struct laves__feature_findings {
   laves__feature_places places[LAVES_FEATURE_FAULT_COUNT]; /* in the end worst first */
 } laves__feature_findings;
 
+/* Whether options came from their maker and are in range. */
+laves_result laves__check_feature_options(const laves_feature_options *options, laves_error *error);
+
 /* The features of a domain as the options ask for them. *features: free whatever is returned. */
 laves_result laves__find_features_for(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
                                       const laves__oracle *oracle, const laves_feature_options *options,

@@ -172,11 +172,10 @@ static laves_certify_options options_of(const laves_certificate *stated, const l
   options.min_dihedral = stated->asked_min_dihedral;
   options.max_dihedral = stated->asked_max_dihedral;
   options.volume_length = stated->asked_volume_length;
-  if (stated->has_features) {
-    options.feature_angle = stated->features.angle;
-    options.feature_tags = stated->features_tags;
-    options.feature_size = stated->features.size;
-  }
+  const laves_feature_check *features = &stated->features;
+  if (stated->has_features && features->angle >= 1 && features->angle <= 179) options.feature_angle = features->angle;
+  if (stated->has_features && features->size > 0 && isfinite(features->size)) options.feature_size = features->size;
+  options.feature_tags = stated->has_features && stated->features_tags;
   return options;
 }
 

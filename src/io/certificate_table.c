@@ -42,6 +42,10 @@ _Static_assert(
     offsetof(laves_certificate, attained_max_dihedral) == offsetof(laves_certificate, attained_min_dihedral) + sizeof(double) &&
         offsetof(laves_certificate, promised_max_dihedral) ==
             offsetof(laves_certificate, promised_min_dihedral) + sizeof(double) &&
+        offsetof(laves_certificate, features.away_max_dihedral) ==
+            offsetof(laves_certificate, features.away_min_dihedral) + sizeof(double) &&
+        offsetof(laves_certificate, features.free_max_dihedral) ==
+            offsetof(laves_certificate, features.free_min_dihedral) + sizeof(double) &&
         offsetof(laves_certificate, asked_max_dihedral) == offsetof(laves_certificate, asked_min_dihedral) + sizeof(double) &&
         offsetof(laves_certificate, options.max_dihedral) == offsetof(laves_certificate, options.min_dihedral) + sizeof(double),
     "windows are pairs");
@@ -126,6 +130,8 @@ const laves__member laves__certificate_members[] = {
     ROW("features", "spurious_edges", COUNT, FEATURE, features.spurious, 1),
     ROW("features", "straddling_faces", COUNT, FEATURE, features.straddling, 1),
     ROW("features", "sharpest", NUMBER, FEATURE, features.sharpest, 1),
+    ROW("features", "window_away", NUMBER, FEATURE, features.away_min_dihedral, 2),
+    ROW("features", "window_free", NUMBER, FEATURE, features.free_min_dihedral, 2),
 
     TEXT("input", "name", NONE, input_name),
     TEXT("input", "kind", INPUT, input_kind),
