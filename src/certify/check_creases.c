@@ -90,6 +90,7 @@ static void sum_crease(const sampling *all, size_t first, size_t end, laves__cre
     found->distance = s->distance;
     found->place = s->point;
   }
+  found->sampled = weight;
   found->local_edge = weight > 0 ? edge / weight : 0;
   found->is_short = all->f->features->crease[all->samples[first].crease].length < found->local_edge;
 }
@@ -109,7 +110,7 @@ static bool report_lost(laves__feature_findings *f, size_t crease) {
 static bool sum_up(const sampling *all) {
   laves__feature_findings *f = all->f;
   laves_feature_check *c = f->check;
-  double kept = 0, long_length = 0, sum = 0, weight = 0;
+  double kept = 0, sampled = 0, sum = 0;
   laves__vec3 worst = v3(0, 0, 0);
   size_t first = 0;
   c->to_mesh_max = -1;
@@ -124,13 +125,10 @@ static bool sum_up(const sampling *all) {
       c->short_creases++;
       c->short_length += length;
     } else {
-      long_length += length;
+      sampled += found->sampled;
       kept += found->kept;
       c->creases_kept += found->is_kept;
-      for (size_t k = first; k < end; k++) {
-        sum += all->samples[k].weight * all->samples[k].distance;
-        weight += all->samples[k].weight;
-      }
+      for (size_t k = first; k < end; k++) sum += all->samples[k].weight * all->samples[k].distance;
       if (found->distance > c->to_mesh_max) {
         c->to_mesh_max = found->distance;
         worst = found->place;
@@ -141,8 +139,8 @@ static bool sum_up(const sampling *all) {
   }
   c->creases = f->features->crease_count;
   c->to_mesh_max = fmax(0, c->to_mesh_max);
-  c->to_mesh_mean = weight > 0 ? sum / weight : 0;
-  c->kept_share = long_length > 0 ? fmin(1, kept / long_length) : 1;
+  c->to_mesh_mean = sampled > 0 ? sum / sampled : 0;
+  c->kept_share = sampled > 0 ? kept / sampled : 1;
   worst = v3_add(worst, f->oracle->origin);
   for (int k = 0; k < 3; k++) c->to_mesh_place[k] = (&worst.x)[k];
   return true;

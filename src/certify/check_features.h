@@ -22,7 +22,8 @@ typedef struct laves__crease_finding {
   double distance; /* the largest of its samples to a boundary edge */
   laves__vec3 place;
   double local_edge; /* mean of the boundary's edges near by; 0: not known */
-  double kept;       /* length of it within the tolerance of edges that run along creases */
+  double sampled;    /* length that its samples stand for */
+  double kept;       /* of that, within the tolerance of edges that run along creases */
   bool is_short, is_kept;
   double least_dihedral; /* of tets at edges that lie on it; INFINITY: none */
   int64_t tet;
