@@ -91,6 +91,7 @@ static laves_result certify(session *run, check_run *all) {
   options.min_dihedral = all->window.min_dihedral;
   options.max_dihedral = all->window.max_dihedral;
   options.volume_length = all->window.volume_length;
+  if (run->given->check_features) options.feature_angle = run->given->feature_angle;
   return session_settle(run, laves_certify(run->context, all->mesh, &options, &all->certificate, &run->error));
 }
 

@@ -157,24 +157,31 @@ static void write_figures(json *out, const laves_feature_check *c) {
   json_numbers(out, "free_dihedral", (const double[2]){c->free_min_dihedral, c->free_max_dihedral}, 2);
 }
 
-void feature_report_write_json(json *out, const feature_report *report) {
-  if (!report->made) return;
+static void write_feature_place(json *out, const laves_feature_place *p) {
+  json_open_object(out, NULL);
+  json_text(out, "fault", laves_feature_fault_key(p->fault));
+  json_numbers(out, "place", p->place, 3);
+  json_number(out, "distance", p->distance);
+  json_number(out, "length", p->length);
+  json_number(out, "angle", p->angle);
+  json_number(out, "dihedral", p->dihedral);
+  json_integer(out, "index", p->index);
+  json_close(out);
+}
+
+void feature_check_write_json(json *out, const laves_feature_check *check, const laves_feature_place *places,
+                              size_t place_count) {
   json_open_object(out, "features");
-  write_counts(out, &report->check);
-  write_figures(out, &report->check);
-  json_open_array(out, "places");
-  for (size_t i = 0; i < report->place_count; ++i) {
-    const laves_feature_place *p = &report->places[i];
-    json_open_object(out, NULL);
-    json_text(out, "fault", laves_feature_fault_key(p->fault));
-    json_numbers(out, "place", p->place, 3);
-    json_number(out, "distance", p->distance);
-    json_number(out, "length", p->length);
-    json_number(out, "angle", p->angle);
-    json_number(out, "dihedral", p->dihedral);
-    json_integer(out, "index", p->index);
+  write_counts(out, check);
+  write_figures(out, check);
+  if (places) {
+    json_open_array(out, "places");
+    for (size_t i = 0; i < place_count; ++i) write_feature_place(out, &places[i]);
     json_close(out);
   }
   json_close(out);
-  json_close(out);
+}
+
+void feature_report_write_json(json *out, const feature_report *report) {
+  if (report->made) feature_check_write_json(out, &report->check, report->places, report->place_count);
 }

@@ -18,6 +18,9 @@ laves_result feature_report_make(session *run, const laves_mesh *mesh, const lav
 /* A crease that is not short, or a corner, is lost. */
 bool feature_report_misses(const feature_report *report);
 
+/* The figures of a check as the object `features`; places: NULL: the member is left out. */
+void feature_check_write_json(json *out, const laves_feature_check *check, const laves_feature_place *places, size_t place_count);
+
 void feature_report_say(const feature_report *report);
 void feature_report_write_json(json *out, const feature_report *report);
 

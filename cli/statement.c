@@ -41,12 +41,16 @@ static const char *causes_of(const laves_certificate *c, laves_exception_kind ki
   return text;
 }
 
+static bool is_of_features(int kind) {
+  return kind == LAVES_EXCEPTION_CREASE_LOST || kind == LAVES_EXCEPTION_CORNER_LOST || kind == LAVES_EXCEPTION_SHARP_INPUT;
+}
+
 static void say_exceptions(const laves_certificate *c, bool lists) {
   char causes[160];
   text_buffer count;
   for (int kind = LAVES_EXCEPTION_OUTSIDE_PROMISED; kind < LAVES_EXCEPTION_COUNT; ++kind) {
     if (c->exception_counts[kind] == 0 || kind == LAVES_EXCEPTION_THIN) continue;
-    if (lists && (kind == LAVES_EXCEPTION_OUTSIDE_ASKED || kind == LAVES_EXCEPTION_DISTANT)) continue;
+    if (lists && (kind == LAVES_EXCEPTION_OUTSIDE_ASKED || kind == LAVES_EXCEPTION_DISTANT || is_of_features(kind))) continue;
     text_say("  %s %s%s", text_count(&count, c->exception_counts[kind]), laves_exception_text((laves_exception_kind)kind),
              causes_of(c, (laves_exception_kind)kind, causes, sizeof causes));
   }
@@ -61,6 +65,12 @@ static void say_tiles(const laves_certificate *c) {
     text_say("  %.1f %% exact tiles", percent * (double)c->lattice_tets);
 }
 
+static void say_features(const laves_feature_check *f) {
+  text_buffer creases;
+  text_say("  %s, %.2f %% of the length kept within %.4g; %zu of %zu corners kept", text_plural(&creases, f->creases, "crease"),
+           100 * f->kept_share, f->tolerance, f->corners_kept, f->corners);
+}
+
 void statement_say(const laves_certificate *c, bool lists) {
   say_tiles(c);
   if (c->check.has_distance) say_distances(&c->check);
@@ -68,6 +78,7 @@ void statement_say(const laves_certificate *c, bool lists) {
     text_say("  promised %.6g .. %.6g%s: %s", c->promised_min_dihedral, c->promised_max_dihedral, text_degree(),
              c->promise_holds ? "holds" : "BROKEN");
   }
+  if (c->has_features && !lists) say_features(&c->features);
   say_exceptions(c, lists);
 }
 
