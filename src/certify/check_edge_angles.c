@@ -19,8 +19,9 @@ typedef struct extremes {
   double least, most;
 } extremes;
 
+/* Of tets that touch no feature, and of those that touch features but none that is sharp. */
 typedef struct block {
-  extremes away, free;
+  extremes away, touching;
 } block;
 
 typedef struct windows {
@@ -30,7 +31,16 @@ typedef struct windows {
 
 static const extremes none = {-HUGE_VAL, HUGE_VAL};
 
-static extremes join(extremes a, extremes b) { return (extremes){fmax(a.least, b.least), fmin(a.most, b.most)}; }
+/* Comparisons, since what is not a number must not count. */
+static void take(extremes *e, double cosine) {
+  if (cosine > e->least) e->least = cosine;
+  if (cosine < e->most) e->most = cosine;
+}
+
+static void join(extremes *e, const extremes *more) {
+  if (more->least > e->least) e->least = more->least;
+  if (more->most < e->most) e->most = more->most;
+}
 
 static uint8_t touch_of(const laves__feature_findings *f, const int32_t tet[4]) {
   return f->touch[tet[0]] | f->touch[tet[1]] | f->touch[tet[2]] | f->touch[tet[3]];
@@ -49,10 +59,8 @@ static void measure_blocks(void *user, size_t begin, size_t end, int worker) {
       const uint8_t touch = touch_of(f, f->mesh->tets[t]);
       if (touch & LAVES__TOUCHES_SHARP) continue;
       laves__tet_dihedral_cosines(p, cosines);
-      extremes tet = none;
-      for (int e = 0; e < 6; e++) tet = join(tet, (extremes){cosines[e], cosines[e]});
-      all.free = join(all.free, tet);
-      if (!touch) all.away = join(all.away, tet);
+      extremes *into = touch ? &all.touching : &all.away;
+      for (int e = 0; e < 6; e++) take(into, cosines[e]);
     }
     w->blocks[b] = all;
   }
@@ -69,14 +77,17 @@ static laves_result measure_windows(laves__feature_findings *f, laves_error *err
   windows w = {f, laves__alloc(f->context, count, sizeof *w.blocks)};
   if (!w.blocks) return laves__fail_memory(f->context, error);
   const bool complete = laves__parallel_for(f->context, "check", count, 1, measure_blocks, &w);
-  for (size_t b = 0; complete && b < count; b++)
-    all = (block){join(all.away, w.blocks[b].away), join(all.free, w.blocks[b].free)};
+  for (size_t b = 0; complete && b < count; b++) {
+    join(&all.away, &w.blocks[b].away);
+    join(&all.touching, &w.blocks[b].touching);
+  }
   laves__free(f->context, w.blocks, count, sizeof *w.blocks);
   if (!complete) return laves__fail_cancelled(error);
   c->away_min_dihedral = angle_of(all.away.least);
   c->away_max_dihedral = angle_of(all.away.most);
-  c->free_min_dihedral = angle_of(all.free.least);
-  c->free_max_dihedral = angle_of(all.free.most);
+  join(&all.touching, &all.away);
+  c->free_min_dihedral = angle_of(all.touching.least);
+  c->free_max_dihedral = angle_of(all.touching.most);
   return LAVES_OK;
 }
 

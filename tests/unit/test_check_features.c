@@ -177,6 +177,51 @@ static void cube_far_away(void **state) {
   assert_int_equal(o.count, 0);
 }
 
+/* A round bar 8 high: squares of a grid moved on to a disc, so that its rims are closed creases without a corner. */
+static laves_mesh *bar_mesh(laves_context *context) {
+  laves_mesh *mesh = cube_mesh(context);
+  for (size_t i = 0; i < mesh->vertex_count; i++) {
+    laves__vec3 *p = &mesh->points[i];
+    const double x = p->x - SIDE / 2.0, y = p->y - SIDE / 2.0, norm = sqrt(x * x + y * y);
+    const double share = norm > 0 ? fmax(fabs(x), fabs(y)) / norm : 0;
+    *p = v3(x * share, y * share, p->z);
+  }
+  return mesh;
+}
+
+/* The solid within the boundary of a mesh. */
+static laves_domain *domain_within(laves_context *context, const laves_mesh *mesh) {
+  laves_domain *domain = NULL;
+  assert_int_equal(laves_domain_from_triangles(context, &mesh->points->x, mesh->vertex_count, (const uint32_t *)mesh->faces,
+                                               mesh->face_count, NULL, &domain, NULL),
+                   LAVES_OK);
+  return domain;
+}
+
+static void closed_creases(void **state) {
+  laves_mesh *mesh = bar_mesh(*state);
+  outcome o = check_and_free(*state, mesh, domain_within(*state, mesh));
+  assert_int_equal(o.check.creases, 2);
+  assert_int_equal(o.check.creases_kept, 2);
+  assert_int_equal(o.check.corners, 0);
+  assert_int_equal(o.check.mesh_creases, 2 * 4 * SIDE);
+  assert_int_equal(o.count, 0);
+  assert_true(o.check.length > 2 * 2 * 3.1 * SIDE / 2 && o.check.length < 2 * 2 * 3.15 * SIDE / 2);
+  /* One rim drawn in by a tenth. */
+  mesh = bar_mesh(*state);
+  laves_domain *domain = domain_within(*state, mesh);
+  for (size_t i = 0; i < mesh->vertex_count; i++) {
+    laves__vec3 *p = &mesh->points[i];
+    if (p->z == SIDE) *p = v3(0.9 * p->x, 0.9 * p->y, p->z);
+  }
+  o = check_and_free(*state, mesh, domain);
+  assert_int_equal(o.check.creases_kept, 1);
+  const laves_feature_place *rim = first_of(&o, LAVES_FEATURE_FAULT_CREASE);
+  assert_float_equal(rim->place[2], SIDE, 1e-12);
+  assert_true(rim->distance > 0.3 && rim->distance <= 0.4 + 1e-9);
+  assert_float_equal(o.check.kept_share, 0.5, 0.01);
+}
+
 /* ---- meshes that do not ---- */
 
 static void moved_corner(void **state) {
@@ -239,6 +284,7 @@ static void dent(void **state) {
   const laves_feature_place *edge = first_of(&o, LAVES_FEATURE_FAULT_SPURIOUS);
   assert_float_equal(edge->angle, 90, 1e-4);
   assert_float_equal(edge->distance, o.check.from_mesh_max, 0);
+  for (size_t i = 1; i < o.count; i++) assert_true(o.places[i].distance <= o.places[i - 1].distance);
 }
 
 /* A ball in place of a cube keeps nothing, and all that it is judged by is finite. */
@@ -397,6 +443,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(features_made_by_hand, set_up, tear_down),
       cmocka_unit_test_setup_teardown(cube_is_kept, set_up, tear_down),
       cmocka_unit_test_setup_teardown(cube_far_away, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(closed_creases, set_up, tear_down),
       cmocka_unit_test_setup_teardown(moved_corner, set_up, tear_down),
       cmocka_unit_test_setup_teardown(near_corner, set_up, tear_down),
       cmocka_unit_test_setup_teardown(straddled_crease, set_up, tear_down),
