@@ -5,7 +5,7 @@
 #include "certify/check_features.h"
 
 /* Samples an edge of the mesh, and how many at most beyond one for each segment; more lie further apart. */
-enum { SAMPLES_PER_EDGE = 8, SAMPLES_MAX = 1 << 22 };
+enum { SAMPLES_PER_EDGE = 8, SAMPLES_MAX = 1 << 20 };
 
 /* Of the diagonal: a vertex that near to a corner is at its place, rounding of coordinates apart; an edge that near misses it by
  * less than can be seen. */
