@@ -124,13 +124,13 @@ def crease_row(name, tets, facts, cost, plain_cost):
            "creases": f["creases"], "short": f["short_creases"], "creases_kept": f["creases_kept"],
            "to_mesh": f["to_mesh_max"] / diagonal if f["creases"] else None,
            "from_mesh": None if f["from_mesh_max"] is None else f["from_mesh_max"] / diagonal,
-           "kept": f["kept_share"], "corners": f["corners"], "corners_kept": f["corners_kept"], "spurious": f["spurious"],
+           "kept": f["kept_share"], "corners": f["corners"] - f["short_corners"], "corners_kept": f["corners_kept"], "spurious": f["spurious"],
            "straddling": f["straddling"], "distance": two_sided(facts) / diagonal, "cost": cost, "plain_cost": plain_cost}
     # All of these solids have creases: to find none is to keep none.
     row["creases_met"] = (f["creases"] > 0 and f["creases_kept"] + f["short_creases"] == f["creases"]
                           and row["to_mesh"] <= CREASE_DISTANCE
                           and row["from_mesh"] is not None and row["from_mesh"] <= CREASE_DISTANCE)
-    row["corners_met"] = f["corners_kept"] == f["corners"] if f["corners"] else None if f["creases"] else False
+    row["corners_met"] = f["corners_kept"] == row["corners"] if row["corners"] else None if f["creases"] else False
     row["distance_met"] = row["distance"] <= SURFACE_DISTANCE
     row["window_met"] = within(row["low"], row["high"], WINDOW) if is_free(row) else None
     allowed = min(WIDE_WINDOW[0], row["sharpest"] or 180), WIDE_WINDOW[1]

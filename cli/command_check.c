@@ -18,7 +18,8 @@ enum { DIFFERENCES_SAID = 20 };
 
 typedef struct place_list {
   laves_place *places;
-  size_t capacity, found; /* found may exceed capacity */
+  size_t capacity, found;                     /* found may exceed capacity */
+  double crease_angles[LAVES_PLACE_CAPACITY]; /* of the first ones; NAN: no crease */
 } place_list;
 
 typedef struct check_run {
@@ -54,9 +55,11 @@ static laves_result read_mesh(session *run, check_run *all) {
 static void take_places(const laves_certificate *certificate, laves_exception_kind kind, place_list *list) {
   list->found = certificate->exception_counts[kind];
   size_t taken = 0;
+  for (size_t i = 0; i < LAVES_PLACE_CAPACITY; ++i) list->crease_angles[i] = NAN;
   for (size_t i = 0; i < certificate->exception_count && taken < list->capacity; ++i) {
     const laves_exception *e = &certificate->exceptions[i];
     if (e->kind != kind) continue;
+    if (taken < LAVES_PLACE_CAPACITY) list->crease_angles[taken] = e->crease_angle;
     laves_place *place = &list->places[taken++];
     *place = (laves_place){.value = e->value, .tet = e->index, .curvature_radius = e->curvature_radius};
     memcpy(place->place, e->place, sizeof e->place);
@@ -109,10 +112,16 @@ static laves_result verify(session *run, check_run *all) {
 
 /* ---- words ---- */
 
-static void say_place(const laves_place *at) {
+/* Known of the first places, which the certificate lists. */
+static double crease_angle(const place_list *list, size_t i) { return i < LAVES_PLACE_CAPACITY ? list->crease_angles[i] : NAN; }
+
+static void say_place(const place_list *list, size_t i) {
+  const laves_place *at = &list->places[i];
   text_buffer place;
   char curvature[60] = "";
   if (isfinite(at->curvature_radius)) snprintf(curvature, sizeof curvature, ", curvature radius %.3g", at->curvature_radius);
+  if (isfinite(crease_angle(list, i)))
+    snprintf(curvature, sizeof curvature, ", on a crease of %.2f%s", crease_angle(list, i), text_degree());
   if (at->value < 1) {
     text_say("    tet %lld: volume-length %.3f at %s%s", (long long)at->tet, at->value, text_place(&place, at->place), curvature);
   } else {
@@ -131,7 +140,7 @@ static void say_window(const check_run *all) {
   text_say("  %s outside %g .. %g%s or below volume-length %g%s", text_plural(&count, all->outside.found, "tet"),
            all->window.min_dihedral, all->window.max_dihedral, text_degree(), all->window.volume_length,
            all->outside.capacity ? "; the worst:" : "");
-  for (size_t i = 0; i < listed(&all->outside); ++i) say_place(&all->outside.places[i]);
+  for (size_t i = 0; i < listed(&all->outside); ++i) say_place(&all->outside, i);
 }
 
 static void say_distant(const check_run *all) {
@@ -186,6 +195,7 @@ static void write_places(json *out, const char *key, const place_list *list) {
     json_number(out, "value", list->places[i].value);
     json_integer(out, "tet", list->places[i].tet);
     json_number(out, "curvature_radius", list->places[i].curvature_radius);
+    json_number(out, "crease_angle", crease_angle(list, i));
     json_close(out);
   }
   json_close(out);

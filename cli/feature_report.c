@@ -23,7 +23,7 @@ laves_result feature_report_make(session *run, const laves_mesh *mesh, const lav
 
 bool feature_report_misses(const feature_report *report) {
   const laves_feature_check *c = &report->check;
-  return report->made && (c->creases_kept + c->short_creases < c->creases || c->corners_kept < c->corners);
+  return report->made && (c->creases_kept + c->short_creases < c->creases || c->corners_kept + c->short_corners < c->corners);
 }
 
 /* ---- words ---- */
@@ -37,14 +37,14 @@ static void say_way(const char *way, double max, double diagonal, const double p
 
 static void say_creases(const laves_feature_check *c) {
   text_buffer kept, corners, shorts;
-  char apart[90] = "";
+  char apart[120] = "";
   if (c->short_creases) {
-    snprintf(apart, sizeof apart, " (%s shorter than the edges near by left out)",
-             text_plural(&shorts, c->short_creases, "crease"));
+    snprintf(apart, sizeof apart, " (%s shorter than the edges near by left out, and %zu corners between such)",
+             text_plural(&shorts, c->short_creases, "crease"), c->short_corners);
   }
-  text_say("    kept within %.4g: %.2f %% of the length, %s of %zu%s; %s of %zu", c->tolerance, 100 * c->kept_share,
-           text_plural(&kept, c->creases_kept, "crease"), c->creases - c->short_creases, apart,
-           text_plural(&corners, c->corners_kept, "corner"), c->corners);
+  text_say("    kept within %.4g: %.2f %% of the length, %s of %zu, %s of %zu%s", c->tolerance, 100 * c->kept_share,
+           text_plural(&kept, c->creases_kept, "crease"), c->creases - c->short_creases,
+           text_plural(&corners, c->corners_kept, "corner"), c->corners - c->short_corners, apart);
   if (c->creases > c->short_creases) {
     say_way("creases to edges of the mesh", c->to_mesh_max, c->diagonal, c->to_mesh_place, c->to_mesh_mean);
   }
@@ -118,17 +118,10 @@ static void write_counts(json *out, const laves_feature_check *c) {
     const char *key;
     size_t count;
   } counts[] = {
-      {"creases", c->creases},
-      {"short_creases", c->short_creases},
-      {"creases_kept", c->creases_kept},
-      {"corners", c->corners},
-      {"corners_kept", c->corners_kept},
-      {"corners_near", c->corners_near},
-      {"mesh_creases", c->mesh_creases},
-      {"mesh_bent", c->mesh_bent},
-      {"spurious", c->spurious},
-      {"straddling", c->straddling},
-      {"sharp", c->sharp},
+      {"creases", c->creases},           {"short_creases", c->short_creases}, {"creases_kept", c->creases_kept},
+      {"corners", c->corners},           {"short_corners", c->short_corners}, {"corners_kept", c->corners_kept},
+      {"corners_near", c->corners_near}, {"mesh_creases", c->mesh_creases},   {"mesh_bent", c->mesh_bent},
+      {"spurious", c->spurious},         {"straddling", c->straddling},       {"sharp", c->sharp},
   };
   for (size_t i = 0; i < sizeof counts / sizeof counts[0]; ++i) json_integer(out, counts[i].key, (int64_t)counts[i].count);
 }

@@ -543,7 +543,8 @@ typedef struct laves_feature_options {
 LAVES_API laves_feature_options laves_feature_options_default(void);
 
 /// How well a mesh keeps the creases and corners of a domain: filled by laves_check_features(). Lengths in the units of the mesh.
-/// A crease is short when it is shorter than the boundary edges near by; short ones are counted apart and in nothing else.
+/// A crease is short when it is shorter than the boundary edges near by; short ones are counted apart and in nothing else, and so
+/// are corners at which only short ones end, unless they are tips or drawn.
 typedef struct laves_feature_check {
   double angle, size, tolerance;  ///< as asked, with what 0 stands for
   double diagonal;                ///< of the domain's box
@@ -555,9 +556,9 @@ typedef struct laves_feature_check {
   double kept_share;    ///< of the length of those not short, so kept; 1 where there are none
   double to_mesh_max, to_mesh_mean;  ///< from samples of them to the nearest boundary edge; 0 where there are none
   double to_mesh_place[3];
-  size_t corners;
-  size_t corners_kept;  ///< a vertex of the mesh stands at exactly that place (1e-9 of the diagonal)
-  size_t corners_near;  ///< not that, but an edge passes within 1e-4 of the diagonal; all others are lost
+  size_t corners, short_corners;  ///< all; those at which only short creases end, which are in none of what follows
+  size_t corners_kept;            ///< a vertex of the mesh stands at exactly that place (1e-9 of the diagonal)
+  size_t corners_near;            ///< not that, but an edge passes within 1e-4 of the diagonal; all others are lost
   // The mesh's creases: boundary edges at which its normal turns by more than `angle`.
   size_t mesh_creases;  ///< how many
   size_t mesh_bent;  ///< those of them where it is the bend of the solid's surface, not sharp at all, that is too strong for the

@@ -181,6 +181,14 @@ static int32_t nearer_end(const laves__boundary_edges *e, uint32_t edge, laves__
   return to_a <= to_b ? a : b;
 }
 
+/* Whether only short creases end at a corner. Tips and what the user drew count in any case. */
+static bool is_short_corner(const laves__feature_findings *f, const laves__corner *corner) {
+  if (corner->fixed || corner->crease_count == 0) return false;
+  for (uint32_t k = 0; k < corner->crease_count; k++)
+    if (!f->crease[f->features->corner_crease[corner->first_crease + k]].is_short) return false;
+  return true;
+}
+
 laves_result laves__check_corners(laves__feature_findings *f, laves_error *error) {
   laves_feature_check *c = f->check;
   c->corners = f->features->corner_count;
@@ -190,6 +198,10 @@ laves_result laves__check_corners(laves__feature_findings *f, laves_error *error
     const uint32_t edge = laves__boundary_edges_nearest(&f->edges, p, INFINITY, NULL, &distance);
     const int32_t vertex = edge == LAVES__NONE ? -1 : nearer_end(&f->edges, edge, p, &to_end);
     if (vertex >= 0 && to_end <= c->tolerance) f->touch[vertex] |= LAVES__TOUCHES;
+    if (is_short_corner(f, &f->features->corner[i])) {
+      c->short_corners++;
+      continue;
+    }
     if (to_end <= exact_share * c->diagonal) {
       c->corners_kept++;
       continue;

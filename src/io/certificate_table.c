@@ -124,6 +124,7 @@ const laves__member laves__certificate_members[] = {
     ROW("features", "to_mesh_max", NUMBER, FEATURE, features.to_mesh_max, 1),
     ROW("features", "to_mesh_place", NUMBER, NONE, features.to_mesh_place, 3),
     ROW("features", "corners", COUNT, FEATURE, features.corners, 1),
+    ROW("features", "short_corners", COUNT, FEATURE, features.short_corners, 1),
     ROW("features", "corners_kept", COUNT, FEATURE, features.corners_kept, 1),
     ROW("features", "from_mesh_max", NUMBER, FEATURE, features.from_mesh_max, 1),
     ROW("features", "from_mesh_place", NUMBER, NONE, features.from_mesh_place, 3),
