@@ -544,7 +544,7 @@ LAVES_API laves_feature_options laves_feature_options_default(void);
 
 /// How well a mesh keeps the creases and corners of a domain: filled by laves_check_features(). Lengths in the units of the mesh.
 /// A crease is short when it is shorter than the boundary edges near by; short ones are counted apart and in nothing else, and so
-/// are corners at which only short ones end, unless they are tips or drawn.
+/// are corners at which only short ones end. Tips and what was drawn are never short.
 typedef struct laves_feature_check {
   double angle, size, tolerance;  ///< as asked, with what 0 stands for
   double diagonal;                ///< of the domain's box
@@ -565,9 +565,8 @@ typedef struct laves_feature_check {
                      ///< size; they are in none of what follows
   double from_mesh_max;  ///< largest distance of an end or middle of one from the solid's nearest crease; INFINITY: it has none
   double from_mesh_place[3];
-  size_t spurious;  ///< further away than the tolerance
-  size_t
-      straddling;  ///< boundary faces that have surface of different patches below them, further from creases than the tolerance
+  size_t spurious;    ///< further away than the tolerance
+  size_t straddling;  ///< boundary faces below which lie different patches, further from creases than the tolerance
   // Angles.
   size_t sharp;                                 ///< creases less than 80 degrees wide inside
   double sharpest;                              ///< least angle of all creases, degrees; NAN: there is none

@@ -2,6 +2,8 @@
  *
  * Creases are sampled at the points of their polylines and evenly between them; a sample stands for half the way to either
  * neighbour. Each sample is written by one thread; sums are taken in the order of the samples. */
+#include <string.h>
+
 #include "certify/check_features.h"
 
 /* Samples an edge of the mesh, and how many at most beyond one for each segment; more lie further apart. */
@@ -84,6 +86,7 @@ static void sum_crease(const sampling *all, size_t first, size_t end, laves__cre
     const sample *s = &all->samples[i];
     weight += s->weight;
     edge += s->weight * (double)s->edge;
+    found->sum += s->weight * s->distance;
     if (s->kept) found->kept += s->weight;
     found->is_kept = found->is_kept && s->kept;
     if (!(s->distance > found->distance)) continue;
@@ -92,7 +95,8 @@ static void sum_crease(const sampling *all, size_t first, size_t end, laves__cre
   }
   found->sampled = weight;
   found->local_edge = weight > 0 ? edge / weight : 0;
-  found->is_short = all->f->features->crease[all->samples[first].crease].length < found->local_edge;
+  const laves__crease *crease = &all->f->features->crease[all->samples[first].crease];
+  found->is_short = !crease->drawn && crease->length < found->local_edge;
 }
 
 static bool report_lost(laves__feature_findings *f, size_t crease) {
@@ -106,43 +110,42 @@ static bool report_lost(laves__feature_findings *f, size_t crease) {
   return true;
 }
 
+/* Adds one that is not short to the sums; *total gathers lengths and distances. */
+static void add_crease(laves_feature_check *c, const laves__crease_finding *found, laves__crease_finding *total) {
+  total->sampled += found->sampled;
+  total->kept += found->kept;
+  total->sum += found->sum;
+  c->creases_kept += found->is_kept;
+  if (!(found->distance > total->distance)) return;
+  total->distance = found->distance;
+  total->place = found->place;
+}
+
 /* All creases, in their order. */
 static bool sum_up(const sampling *all) {
   laves__feature_findings *f = all->f;
   laves_feature_check *c = f->check;
-  double kept = 0, sampled = 0, sum = 0;
-  laves__vec3 worst = v3(0, 0, 0);
-  size_t first = 0;
-  c->to_mesh_max = -1;
-  for (size_t i = 0; i < f->features->crease_count; i++) {
-    size_t end = first;
-    while (end < all->count && all->samples[end].crease == i) end++;
-    laves__crease_finding *found = &f->crease[i];
+  laves__crease_finding total = {0};
+  size_t first = 0, end = 0;
+  c->creases = f->features->crease_count;
+  for (size_t i = 0; i < c->creases; i++, first = end) {
     const double length = f->features->crease[i].length;
-    sum_crease(all, first, end, found);
+    while (end < all->count && all->samples[end].crease == i) end++;
+    sum_crease(all, first, end, &f->crease[i]);
     c->length += length;
-    if (found->is_short) {
+    if (f->crease[i].is_short) {
       c->short_creases++;
       c->short_length += length;
-    } else {
-      sampled += found->sampled;
-      kept += found->kept;
-      c->creases_kept += found->is_kept;
-      for (size_t k = first; k < end; k++) sum += all->samples[k].weight * all->samples[k].distance;
-      if (found->distance > c->to_mesh_max) {
-        c->to_mesh_max = found->distance;
-        worst = found->place;
-      }
-      if (!report_lost(f, i)) return false;
+      continue;
     }
-    first = end;
+    add_crease(c, &f->crease[i], &total);
+    if (!report_lost(f, i)) return false;
   }
-  c->creases = f->features->crease_count;
-  c->to_mesh_max = fmax(0, c->to_mesh_max);
-  c->to_mesh_mean = sampled > 0 ? sum / sampled : 0;
-  c->kept_share = sampled > 0 ? kept / sampled : 1;
-  worst = v3_add(worst, f->oracle->origin);
-  for (int k = 0; k < 3; k++) c->to_mesh_place[k] = (&worst.x)[k];
+  c->to_mesh_max = total.distance;
+  c->to_mesh_mean = total.sampled > 0 ? total.sum / total.sampled : 0;
+  c->kept_share = total.sampled > 0 ? total.kept / total.sampled : 1;
+  const laves__vec3 worst = v3_add(total.place, f->oracle->origin);
+  memcpy(c->to_mesh_place, &worst, sizeof c->to_mesh_place);
   return true;
 }
 

@@ -23,6 +23,7 @@ typedef struct laves__crease_finding {
   laves__vec3 place;
   double local_edge; /* mean of the boundary's edges near by; 0: not known */
   double sampled;    /* length that its samples stand for */
+  double sum;        /* of distance times length */
   double kept;       /* of that, within the tolerance of edges that run along creases */
   bool is_short, is_kept;
   double least_dihedral; /* of tets at edges that lie on it; INFINITY: none */

@@ -5,6 +5,8 @@
  *
  * Faces are looked at by three points, a tenth of the way from each corner to the centroid. Only a face that a crease comes near
  * can lie across it, so most are left alone. Every edge and face has its own slot, which one thread writes. */
+#include <string.h>
+
 #include "certify/check_features.h"
 
 /* Radius of curvature in edges below which the domain is bent. */
@@ -83,7 +85,7 @@ static bool sum_edges(const sharp_edges *all, laves__feature_findings *f) {
     place->index = f->edges.ends[s->edge][0];
   }
   worst = v3_add(worst, f->oracle->origin);
-  for (int k = 0; k < 3; k++) c->from_mesh_place[k] = (&worst.x)[k];
+  memcpy(c->from_mesh_place, &worst, sizeof c->from_mesh_place);
   return true;
 }
 
