@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "feature_report.h"
 #include "input.h"
 #include "output.h"
 #include "session.h"
@@ -17,7 +18,8 @@ enum { DIFFERENCES_SAID = 20 };
 
 typedef struct place_list {
   laves_place *places;
-  size_t capacity, found; /* found may exceed capacity */
+  size_t capacity, found;                     /* found may exceed capacity */
+  double crease_angles[LAVES_PLACE_CAPACITY]; /* of the first ones; NAN: no crease */
 } place_list;
 
 typedef struct check_run {
@@ -26,6 +28,7 @@ typedef struct check_run {
   laves_certificate certificate;
   laves_options window; /* only its window is used */
   place_list outside, distant;
+  feature_report features;
   bool has_check;
   laves_difference differences[DIFFERENCES_SAID];
   size_t difference_count; /* may exceed what was kept */
@@ -52,9 +55,11 @@ static laves_result read_mesh(session *run, check_run *all) {
 static void take_places(const laves_certificate *certificate, laves_exception_kind kind, place_list *list) {
   list->found = certificate->exception_counts[kind];
   size_t taken = 0;
+  for (size_t i = 0; i < LAVES_PLACE_CAPACITY; ++i) list->crease_angles[i] = NAN;
   for (size_t i = 0; i < certificate->exception_count && taken < list->capacity; ++i) {
     const laves_exception *e = &certificate->exceptions[i];
     if (e->kind != kind) continue;
+    if (taken < LAVES_PLACE_CAPACITY) list->crease_angles[taken] = e->crease_angle;
     laves_place *place = &list->places[taken++];
     *place = (laves_place){.value = e->value, .tet = e->index, .curvature_radius = e->curvature_radius};
     memcpy(place->place, e->place, sizeof e->place);
@@ -89,6 +94,7 @@ static laves_result certify(session *run, check_run *all) {
   options.min_dihedral = all->window.min_dihedral;
   options.max_dihedral = all->window.max_dihedral;
   options.volume_length = all->window.volume_length;
+  if (run->given->check_features) options.feature_angle = run->given->feature_angle;
   return session_settle(run, laves_certify(run->context, all->mesh, &options, &all->certificate, &run->error));
 }
 
@@ -106,10 +112,16 @@ static laves_result verify(session *run, check_run *all) {
 
 /* ---- words ---- */
 
-static void say_place(const laves_place *at) {
+/* Known of the first places, which the certificate lists. */
+static double crease_angle(const place_list *list, size_t i) { return i < LAVES_PLACE_CAPACITY ? list->crease_angles[i] : NAN; }
+
+static void say_place(const place_list *list, size_t i) {
+  const laves_place *at = &list->places[i];
   text_buffer place;
   char curvature[60] = "";
   if (isfinite(at->curvature_radius)) snprintf(curvature, sizeof curvature, ", curvature radius %.3g", at->curvature_radius);
+  if (isfinite(crease_angle(list, i)))
+    snprintf(curvature, sizeof curvature, ", on a crease of %.2f%s", crease_angle(list, i), text_degree());
   if (at->value < 1) {
     text_say("    tet %lld: volume-length %.3f at %s%s", (long long)at->tet, at->value, text_place(&place, at->place), curvature);
   } else {
@@ -128,7 +140,7 @@ static void say_window(const check_run *all) {
   text_say("  %s outside %g .. %g%s or below volume-length %g%s", text_plural(&count, all->outside.found, "tet"),
            all->window.min_dihedral, all->window.max_dihedral, text_degree(), all->window.volume_length,
            all->outside.capacity ? "; the worst:" : "");
-  for (size_t i = 0; i < listed(&all->outside); ++i) say_place(&all->outside.places[i]);
+  for (size_t i = 0; i < listed(&all->outside); ++i) say_place(&all->outside, i);
 }
 
 static void say_distant(const check_run *all) {
@@ -165,6 +177,7 @@ static void say_check(const session *run, const check_run *all) {
   statement_say(&all->certificate, true);
   say_window(all);
   say_distant(all);
+  if (all->features.made) feature_report_say(&all->features);
   say_verified(run, all);
   if (run->given->verbose) {
     text_buffer read, checked;
@@ -182,6 +195,7 @@ static void write_places(json *out, const char *key, const place_list *list) {
     json_number(out, "value", list->places[i].value);
     json_integer(out, "tet", list->places[i].tet);
     json_number(out, "curvature_radius", list->places[i].curvature_radius);
+    json_number(out, "crease_angle", crease_angle(list, i));
     json_close(out);
   }
   json_close(out);
@@ -216,6 +230,7 @@ static void check_json(json *out, const session *run, const void *facts) {
     json_integer(out, "distant", (int64_t)all->distant.found);
     write_places(out, "distant_places", &all->distant);
   }
+  feature_report_write_json(out, &all->features);
   json_open_object(out, "seconds");
   json_number(out, "read", all->read_seconds);
   json_number(out, "check", all->check_seconds);
@@ -232,6 +247,8 @@ static laves_result check_steps(session *run, check_run *all) {
   }
   if (given->volume_length >= 0) all->window.volume_length = given->volume_length;
   const char *write_to = given->write_certificate;
+  if (given->check_features && !given->surface)
+    return session_fail(run, LAVES_ERROR_OPTION, "--features needs --surface, the solid whose creases the mesh should keep");
   laves_result result = outputs_check_json(run, given->input);
   if (result == LAVES_OK && write_to) result = outputs_check_text(run, write_to, given->input);
   if (result == LAVES_OK) result = read_mesh(run, all);
@@ -241,6 +258,8 @@ static laves_result check_steps(session *run, check_run *all) {
   const double start = progress_now();
   result = certify(run, all);
   if (result == LAVES_OK) result = find_places(run, all);
+  if (result == LAVES_OK && given->check_features)
+    result = feature_report_make(run, all->mesh, all->surface.domain, &all->features);
   if (result == LAVES_OK) result = verify(run, all);
   all->check_seconds = progress_now() - start;
   all->has_check = result == LAVES_OK;
@@ -249,7 +268,7 @@ static laves_result check_steps(session *run, check_run *all) {
 
   if (session_speaks(run)) say_check(run, all);
   const bool wished = given->window.given || given->volume_length >= 0;
-  const bool missed = (wished && all->outside.found > 0) || all->difference_count > 0;
+  const bool missed = (wished && all->outside.found > 0) || all->difference_count > 0 || feature_report_misses(&all->features);
   return !all->certificate.check.valid || missed ? LAVES_TARGET_MISSED : LAVES_OK;
 }
 
@@ -261,6 +280,7 @@ int command_check(const settings *given) {
   session_write_json(&run, &result, check_json, &all);
   free(all.outside.places);
   free(all.distant.places);
+  free(all.features.places);
   laves_mesh_free(all.mesh);
   laves_domain_free(all.surface.domain);
   return session_close(&run, result);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "feature_report.h"
 #include "input.h"
 #include "output.h"
 #include "session.h"
@@ -247,6 +248,7 @@ static void mesh_json(json *out, const session *run, const void *facts) {
   if (all->has_certificate) {
     summary_check_json(out, &all->certificate.check);
     statement_write_json(out, &all->certificate);
+    if (all->certificate.has_features) feature_check_write_json(out, &all->certificate.features, NULL, 0);
   } else if (all->mesh) {
     json_integer(out, "tets", (int64_t)laves_mesh_tet_count(all->mesh));
     json_integer(out, "vertices", (int64_t)laves_mesh_vertex_count(all->mesh));

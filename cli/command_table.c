@@ -23,11 +23,12 @@ const command commands[] = {
      MESH, command_mesh},
     {"check", "MESH", "say whether a mesh is valid and how good it is",
      "MESH is a tetrahedral mesh of any program (VTU, Gmsh 2.2 and 4.1, Medit, TetGen). Exit code 0: valid; 2: it cannot be\n"
-     "read; 3: it is not valid, a window asked for with --window or --volume-length is missed, or --certificate does not\n"
-     "belong to it.",
+     "read; 3: it is not valid, a window asked for with --window or --volume-length is missed, --features finds creases or\n"
+     "corners lost, or --certificate does not belong to it.",
      "laves check bunny.vtu --surface bunny.obj\n"
      "laves check bunny.vtu --certificate bunny.certificate.json\n"
-     "laves check other.msh --window 20,150 --list 10\n",
+     "laves check other.msh --window 20,150 --list 10\n"
+     "laves check part.msh --surface part.stl --features\n",
      CHECK, command_check},
     {"info", "INPUT", "say what an input is, what is wrong with it, and what meshing will cost",
      "INPUT is what `laves mesh` takes. Nothing is meshed and nothing is written.", "laves info bunny.obj --tets 1M\n", INFO,
@@ -121,6 +122,11 @@ const option option_rows[] = {
      "range for every dihedral angle (LO 0..60, HI 80..180); when given, exit code 3 if it or --volume-length is missed"},
     {"volume-length", 0, CHECK, IN_CHECK, OPTION_REAL, "Q", NULL, false, 0, 0.8, "0.6", MEMBER(volume_length), 0,
      "lowest volume-length ratio; when given, exit code 3 if it is missed"},
+    {"features", 0, CHECK, IN_CHECK, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(check_features), 0,
+     "measure how well the mesh keeps the creases and corners of --surface; exit code 3 when a crease that is longer than the "
+     "edges near by, or a corner, is lost"},
+    {"feature-angle", 0, CHECK, IN_CHECK, OPTION_REAL, "DEG", "degrees", false, 1, 179, "40", MEMBER(feature_angle), 0,
+     "with --features: what counts as a crease, edges of the surface where its normal turns by more"},
     {"list", 0, CHECK, IN_CHECK, OPTION_COUNT, "N", "places", false, 0, 100000, "5", MEMBER(list), 0,
      "how many of the worst places to list"},
 

@@ -41,6 +41,8 @@ typedef struct settings {
   bool no_improve, ascii, quiet, verbose;
   option_numbers window; /* lowest, highest dihedral angle */
   double volume_length;  /* negative: not given */
+  bool check_features;
+  double feature_angle; /* degrees */
   laves_method method;
   double guarantee; /* degrees */
   laves_format format;

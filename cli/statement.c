@@ -41,12 +41,31 @@ static const char *causes_of(const laves_certificate *c, laves_exception_kind ki
   return text;
 }
 
+static bool is_of_features(int kind) { return kind == LAVES_EXCEPTION_CREASE_LOST || kind == LAVES_EXCEPTION_CORNER_LOST; }
+
+/* The first of a kind that is listed, or NULL. */
+static const laves_exception *first_of(const laves_certificate *c, laves_exception_kind kind) {
+  for (size_t i = 0; i < c->exception_count; ++i) {
+    if (c->exceptions[i].kind == kind) return &c->exceptions[i];
+  }
+  return NULL;
+}
+
+static void say_sharp(const laves_certificate *c) {
+  const laves_exception *sharpest = first_of(c, LAVES_EXCEPTION_SHARP_INPUT);
+  text_buffer count, place;
+  if (!sharpest) return;
+  text_say("  %s of the input below the window's %.4g%s, which forces angles below it: the sharpest %.2f%s at %s",
+           text_plural(&count, c->exception_counts[LAVES_EXCEPTION_SHARP_INPUT], "crease"), sharpest->limit, text_degree(),
+           sharpest->value, text_degree(), text_place(&place, sharpest->place));
+}
+
 static void say_exceptions(const laves_certificate *c, bool lists) {
   char causes[160];
   text_buffer count;
   for (int kind = LAVES_EXCEPTION_OUTSIDE_PROMISED; kind < LAVES_EXCEPTION_COUNT; ++kind) {
-    if (c->exception_counts[kind] == 0 || kind == LAVES_EXCEPTION_THIN) continue;
-    if (lists && (kind == LAVES_EXCEPTION_OUTSIDE_ASKED || kind == LAVES_EXCEPTION_DISTANT)) continue;
+    if (c->exception_counts[kind] == 0 || kind == LAVES_EXCEPTION_THIN || kind == LAVES_EXCEPTION_SHARP_INPUT) continue;
+    if (lists && (kind == LAVES_EXCEPTION_OUTSIDE_ASKED || kind == LAVES_EXCEPTION_DISTANT || is_of_features(kind))) continue;
     text_say("  %s %s%s", text_count(&count, c->exception_counts[kind]), laves_exception_text((laves_exception_kind)kind),
              causes_of(c, (laves_exception_kind)kind, causes, sizeof causes));
   }
@@ -61,6 +80,12 @@ static void say_tiles(const laves_certificate *c) {
     text_say("  %.1f %% exact tiles", percent * (double)c->lattice_tets);
 }
 
+static void say_features(const laves_feature_check *f) {
+  text_buffer creases;
+  text_say("  %s, %.2f %% of the length kept within %.4g; %zu of %zu corners kept", text_plural(&creases, f->creases, "crease"),
+           100 * f->kept_share, f->tolerance, f->corners_kept, f->corners - f->short_corners);
+}
+
 void statement_say(const laves_certificate *c, bool lists) {
   say_tiles(c);
   if (c->check.has_distance) say_distances(&c->check);
@@ -68,7 +93,9 @@ void statement_say(const laves_certificate *c, bool lists) {
     text_say("  promised %.6g .. %.6g%s: %s", c->promised_min_dihedral, c->promised_max_dihedral, text_degree(),
              c->promise_holds ? "holds" : "BROKEN");
   }
+  if (c->has_features && !lists) say_features(&c->features);
   say_exceptions(c, lists);
+  say_sharp(c);
 }
 
 static void write_exceptions(json *out, const laves_certificate *c) {

@@ -5,8 +5,8 @@
 #include "json.h"
 #include "laves/laves.h"
 
-/* Tiles, distances, promise, and one line for each kind of exception.
- * @param lists  the caller lists tets outside the asked window and distant places itself */
+/* Tiles, distances, promise, features, and one line for each kind of exception.
+ * @param lists  the caller lists tets outside the asked window, distant places and features itself */
 void statement_say(const laves_certificate *certificate, bool lists);
 
 /* The members that a statement adds to those of a checked mesh. */

@@ -506,9 +506,100 @@ LAVES_API laves_result laves_check_distance(laves_context *context, const laves_
                                             double distance, laves_place *places, size_t capacity, size_t *count,
                                             laves_error *error);
 
+/// What can be out of order about features, and what the input's own angles force: X(name, key in JSON, phrase).
+#define LAVES_FEATURE_FAULT_LIST(X)                                                \
+  X(CREASE, "crease", "creases that are not kept")                                 \
+  X(CORNER, "corner", "corners that are no vertex of the mesh")                    \
+  X(SPURIOUS, "spurious", "sharp edges of the mesh where the solid has no crease") \
+  X(STRADDLING, "straddling", "boundary faces that lie across a crease")           \
+  X(SHARP, "sharp", "creases of the solid that are sharper than 80 degrees")
+
+typedef enum laves_feature_fault {
+#define LAVES_FEATURE_FAULT_ENUM(name, key, text) LAVES_FEATURE_FAULT_##name,
+  LAVES_FEATURE_FAULT_LIST(LAVES_FEATURE_FAULT_ENUM)
+#undef LAVES_FEATURE_FAULT_ENUM
+      LAVES_FEATURE_FAULT_COUNT
+} laves_feature_fault;
+
+/// "crease" and the like, and the phrase; never NULL.
+LAVES_API const char *laves_feature_fault_key(laves_feature_fault fault);
+LAVES_API const char *laves_feature_fault_text(laves_feature_fault fault);
+
+/// A place that laves_check_features() tells of. What does not apply is NAN, or -1.
+typedef struct laves_feature_place {
+  laves_feature_fault fault;
+  double place[3];
+  double distance;  ///< CREASE, CORNER: to the nearest boundary edge of the mesh; SPURIOUS: to the nearest crease
+  double length;    ///< CREASE, SHARP: of the crease
+  double angle;  ///< CREASE, SHARP: the least along the crease, inside the solid, degrees; SPURIOUS: by which the mesh's normal
+                 ///< turns
+  double dihedral;  ///< SHARP: the least dihedral angle of the tetrahedra at edges that lie on the crease, degrees
+  int64_t index;  ///< SPURIOUS: of one vertex of the edge; STRADDLING: of one vertex of the face; SHARP: of the tetrahedron that
+                  ///< has that dihedral angle
+} laves_feature_place;
+
+/// Which features are looked for, and how closely they must be met. From laves_feature_options_default(), then changed.
+typedef struct laves_feature_options {
+  double angle;                    ///< as laves_options.feature_angle; default 40; 0: none is looked for
+  bool tags;                       ///< as laves_options.feature_tags
+  const laves_features *features;  ///< more points and lines; NULL: none
+  double size;                     ///< creases that are shorter are noise of the surface; 0: the mean edge of the mesh's boundary
+  double tolerance;                ///< distance up to which a crease counts as kept; 0: 1e-3 of the diagonal of the domain's box
+  uint32_t cookie;
+} laves_feature_options;
+
+LAVES_API laves_feature_options laves_feature_options_default(void);
+
+/// How well a mesh keeps the creases and corners of a domain: filled by laves_check_features(). Lengths in the units of the mesh.
+/// A crease is short when it is shorter than the boundary edges near by; short ones are counted apart and in nothing else, and so
+/// are corners at which only short ones end. Tips and what was drawn are never short.
+typedef struct laves_feature_check {
+  double angle, size, tolerance;  ///< as asked, with what 0 stands for
+  double diagonal;                ///< of the domain's box
+  double edge_mean;               ///< mean edge of the mesh's boundary
+  // The solid's creases, as the mesh has them.
+  size_t creases, short_creases;  ///< all; those of them that are short
+  double length, short_length;    ///< of all; of those that are short
+  size_t creases_kept;  ///< not short, and wherever they were sampled within the tolerance of edges that run along creases
+  double kept_share;    ///< of the length of those not short, so kept; 1 where there are none
+  double to_mesh_max, to_mesh_mean;  ///< from samples of them to the nearest boundary edge; 0 where there are none
+  double to_mesh_place[3];
+  size_t corners, short_corners;  ///< all; those at which only short creases end, which are in none of what follows
+  size_t corners_kept;            ///< a vertex of the mesh stands at exactly that place (1e-9 of the diagonal)
+  size_t corners_near;            ///< not that, but an edge passes within 1e-4 of the diagonal; all others are lost
+  // The mesh's creases: boundary edges at which its normal turns by more than `angle`.
+  size_t mesh_creases;  ///< how many
+  size_t mesh_bent;  ///< those of them where it is the bend of the solid's surface, not sharp at all, that is too strong for the
+                     ///< size; they are in none of what follows
+  double from_mesh_max;  ///< largest distance of an end or middle of one from the solid's nearest crease; INFINITY: it has none
+  double from_mesh_place[3];
+  size_t spurious;    ///< further away than the tolerance
+  size_t straddling;  ///< boundary faces below which lie different patches, further from creases than the tolerance
+  // Angles.
+  size_t sharp;                                 ///< creases less than 80 degrees wide inside
+  double sharpest;                              ///< least angle of all creases, degrees; NAN: there is none
+  double away_min_dihedral, away_max_dihedral;  ///< over tetrahedra without a vertex on a crease or corner; NAN: there is none
+  double free_min_dihedral, free_max_dihedral;  ///< over those without a vertex on a crease sharper than 70 degrees
+} laves_feature_check;
+
+/// Measures features by code that shares nothing with the stages that make meshes but the finding of the domain's creases. Works
+/// for meshes of any program.
+/// @param options  NULL: the defaults
+/// @param places   out: laves_feature_place[LAVES_FEATURE_FAULT_COUNT * capacity]: by fault, the worst first; may be NULL with
+///                 capacity 0
+/// @param capacity  how many at most of each fault
+/// @param count    out: how many places were filled
+/// @return LAVES_OK when the check ran, LAVES_ERROR_OPTION, LAVES_ERROR_INPUT (a drawn point or line is off the surface, or the
+/// mesh
+///         has no boundary), LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED
+/// Cost: finding the domain's creases, a search for each eighth of an edge along them, and a pass over the boundary.
+LAVES_API laves_result laves_check_features(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
+                                            const laves_feature_options *options, laves_feature_check *check,
+                                            laves_feature_place *places, size_t capacity, size_t *count, laves_error *error);
+
 /* ---- certificate -------------------------------------------------------------------------------------------------- */
 
-enum { LAVES_HASH_CAPACITY = 65, LAVES_NAME_CAPACITY = 256, LAVES_EXCEPTION_CAPACITY = 128 };
+enum { LAVES_HASH_CAPACITY = 65, LAVES_NAME_CAPACITY = 256, LAVES_EXCEPTION_CAPACITY = 192 };
 
 /// What can be out of order: X(name, key in JSON, phrase). The value of an exception is the angle in degrees (or the
 /// volume-length ratio, below 1), the distance, or the thickness that its kind speaks of, else NAN.
@@ -520,7 +611,10 @@ enum { LAVES_HASH_CAPACITY = 65, LAVES_NAME_CAPACITY = 256, LAVES_EXCEPTION_CAPA
   X(OUTSIDE_ASKED, "outside_asked", "tetrahedra outside the asked window")            \
   X(DISTANT, "distant", "places where mesh and surface are over 0.3 edges apart")     \
   X(OFF_SURFACE, "off_surface", "boundary vertices off the surface")                  \
-  X(THIN, "thin", "places where the solid is thinner than the size")
+  X(THIN, "thin", "places where the solid is thinner than the size")                  \
+  X(CREASE_LOST, "crease_lost", "creases that are not kept")                          \
+  X(CORNER_LOST, "corner_lost", "corners that are no vertex")                         \
+  X(SHARP_INPUT, "sharp_input", "creases sharper than the window")
 
 typedef enum laves_exception_kind {
 #define LAVES_EXCEPTION_ENUM(name, key, text) LAVES_EXCEPTION_##name,
@@ -557,6 +651,8 @@ typedef struct laves_exception {
   double limit;             ///< that it passes; NAN: none
   int64_t index;            ///< of the tetrahedron or vertex; -1: neither
   double curvature_radius;  ///< of the surface near by, as in laves_place; NAN: not known
+  double crease_angle;  ///< least angle inside the solid, degrees, of the creases on which an edge of that tetrahedron lies, or
+                        ///< of the crease that is meant; NAN: none, or features were not looked for
 } laves_exception;
 
 /// What a mesh is, recomputed from its arrays: filled by laves_certify(), or read from a file.
@@ -591,9 +687,15 @@ typedef struct laves_certificate {
   bool promise_holds;  ///< every tet is inside the promised window by more than the margin; true without a promise
   double asked_min_dihedral, asked_max_dihedral, asked_volume_length;
 
-  double distance_asked;       ///< the distance from which on places count as DISTANT; 0: not looked for. Where the boundary's
-                               ///< edges are nearest to twice, half, ... the mean edge, it is so many times as much
-  double off_surface_asked;    ///< the distance from which on boundary vertices count as OFF_SURFACE, likewise; 0: not looked for
+  double distance_asked;     ///< the distance from which on places count as DISTANT; 0: not looked for. Where the boundary's
+                             ///< edges are nearest to twice, half, ... the mean edge, it is so many times as much
+  double off_surface_asked;  ///< the distance from which on boundary vertices count as OFF_SURFACE, likewise; 0: not looked for
+  bool has_features;         ///< features were looked for, and the solid has some; of `features`, a file keeps what
+                             ///< docs/certificate.md lists
+  bool features_tags;        ///< edges between tags were looked for too
+  bool features_drawn;       ///< points and lines of the caller's as well, so that nobody else can look for the same
+  laves_feature_check features;
+
   char to_surface_reason[96];  ///< why an upper bound of the distance is not known; empty where it is
   char from_surface_reason[96];
 
@@ -611,6 +713,11 @@ typedef struct laves_certify_options {
   const laves_report *report;    ///< the report of that call, for its promise; given with options
   double promised_min_dihedral, promised_max_dihedral;  ///< where there is no report; default 0, 180: nothing promised
   double min_dihedral, max_dihedral, volume_length;     ///< asked window where there are no options; default as there
+  // Features to be measured where there are no options (with them: those that they ask for). They need the domain and
+  // `distances`.
+  double feature_angle;  ///< as laves_options.feature_angle; default 0: none are looked for
+  bool feature_tags;     ///< as laves_options.feature_tags
+  double feature_size;   ///< as laves_feature_options.size; default 0
   uint32_t cookie;
 } laves_certify_options;
 

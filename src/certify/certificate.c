@@ -1,6 +1,6 @@
 /* The certificate: what a mesh is, stated from its final arrays alone.
  *
- *   hash -> check (counts, validity, topology, quality, distances) -> tiles by their shape -> window -> exceptions
+ *   hash -> check (counts, validity, topology, quality, distances) -> tiles by their shape -> window -> features -> exceptions
  *
  * Nothing is taken over from the stages that made the mesh but what cannot be recomputed: which options were asked, which window
  * is promised for them, and how many vertices were made how. Whether the promise holds is found here.
@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "certify/certify.h"
+#include "certify/check_features.h"
 #include "certify/sha256.h"
 #include "io/file.h"
 
@@ -128,6 +128,48 @@ static void explain_distances(laves_certificate *c) {
   c->off_surface_asked = OFF_SURFACE_SHARE * check->edge_mean;
 }
 
+/* ---- features ---- */
+
+typedef struct feature_part {
+  laves__features features;
+  laves__feature_findings findings;
+} feature_part;
+
+static laves_feature_options asked_features(const laves_certify_options *options) {
+  laves_feature_options asked = laves_feature_options_default();
+  const laves_options *making = options->options;
+  asked.angle = making ? making->feature_angle : options->feature_angle;
+  asked.tags = making ? making->feature_tags : options->feature_tags;
+  asked.features = making ? making->features : NULL;
+  asked.size = making && options->report ? options->report->size : options->feature_size;
+  return asked;
+}
+
+/* Only where the domain has features; else nothing is said of them. *part: to be freed whatever is returned. */
+static laves_result measure_features(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
+                                     const laves_certify_options *options, laves_certificate *c, feature_part *part,
+                                     laves_error *error) {
+  const laves_feature_options asked = asked_features(options);
+  if (!options->domain || !options->distances || boundary->count == 0) return LAVES_OK;
+  if (!(asked.angle > 0) && !asked.tags && !asked.features) return LAVES_OK;
+  laves_result result = laves__check_feature_options(&asked, error);
+  if (result == LAVES_OK)
+    result = laves__find_features_for(context, mesh, boundary, &options->domain->oracle, &asked, &part->features, error);
+  if (result != LAVES_OK || part->features.crease_count + part->features.corner_count == 0) return result;
+  result = laves__check_features_of(context, mesh, boundary, &part->features, &asked, &c->features, &part->findings, error);
+  c->has_features = result == LAVES_OK;
+  c->features_tags = asked.tags;
+  c->features_drawn = asked.features != NULL;
+  return result;
+}
+
+static void free_features(feature_part *part) {
+  laves__feature_findings_free(&part->findings);
+  laves__features_free(&part->features);
+}
+
+/* ---- all ---- */
+
 laves_result laves_certify(laves_context *context, const laves_mesh *mesh, const laves_certify_options *options,
                            laves_certificate *certificate, laves_error *error) {
   const laves_certify_options defaults = laves_certify_options_default();
@@ -136,6 +178,7 @@ laves_result laves_certify(laves_context *context, const laves_mesh *mesh, const
     return laves__fail(error, LAVES_ERROR_OPTION, "the options do not come from laves_certify_options_default()");
   laves_certificate *c = certificate;
   laves__survey survey;
+  feature_part part = {0};
   memset(c, 0, sizeof *c);
   copy_text(c->version, sizeof c->version, laves_version());
   const laves_domain *domain = options->domain;
@@ -147,7 +190,10 @@ laves_result laves_certify(laves_context *context, const laves_mesh *mesh, const
   note_making(options, c);
   find_window(c);
   explain_distances(c);
-  if (result == LAVES_OK) result = laves__list_exceptions(context, mesh, domain, &survey, c, error);
+  if (result == LAVES_OK) result = measure_features(context, mesh, &survey.boundary, options, c, &part, error);
+  if (result == LAVES_OK)
+    result = laves__list_exceptions(context, mesh, domain, &survey, c->has_features ? &part.findings : NULL, c, error);
+  free_features(&part);
   laves__survey_free(&survey);
   return result;
 }

@@ -99,16 +99,16 @@ double laves__corner_cover(laves__vec3 a, laves__vec3 b, laves__vec3 c);
 struct laves__boundary_tree;
 
 /* A sample of a surface, and the share of the surface that it stands for, up to a common factor. */
-typedef struct laves__surface_sample {
+typedef struct laves__domain_sample {
   laves__vec3 point;
   double weight;
-} laves__surface_sample;
+} laves__domain_sample;
 
 /* Samples of a domain's surface (local coordinates), about `spacing` apart times the power of two that the tree tells of the
  * edges near by, for domains that offer none themselves. Returns how many, at most `capacity`; none when the search would
  * cost too much at that spacing. */
 size_t laves__sample_surface(laves_context *context, const laves__oracle *oracle, const struct laves__boundary_tree *tree,
-                             double spacing, laves__surface_sample *samples, size_t capacity);
+                             double spacing, laves__domain_sample *samples, size_t capacity);
 
 /* The smallest radius of curvature of the domain's surface within about `reach` of a point (coordinates of the mesh),
  * seen at that scale; INFINITY where it is flat or absent. */
@@ -138,9 +138,13 @@ laves_result laves__mesh_digest(laves_context *context, const laves_mesh *mesh, 
 laves_result laves__find_tiles(laves_context *context, const laves_mesh *mesh, laves_certificate *certificate,
                                laves_error *error);
 
-/* Fills the exceptions, and what they say of the windows. The certificate's check, windows and size are filled. */
+struct laves__feature_findings;
+
+/* Fills the exceptions, and what they say of the windows. The certificate's check, windows, features and size are filled.
+ * features: NULL: none were looked for. */
 laves_result laves__list_exceptions(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
-                                    const laves__survey *survey, laves_certificate *certificate, laves_error *error);
+                                    const laves__survey *survey, const struct laves__feature_findings *features,
+                                    laves_certificate *certificate, laves_error *error);
 
 /* ---- tets and boundaries ---- */
 

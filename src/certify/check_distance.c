@@ -343,7 +343,7 @@ static laves_result list_found_samples(laves_context *context, const measuring *
                                        laves_error *error) {
   const laves__oracle *oracle = m->oracle;
   laves__samples *samples = m->samples;
-  laves__surface_sample *found = laves__alloc(context, room, sizeof *found);
+  laves__domain_sample *found = laves__alloc(context, room, sizeof *found);
   if (!found) return laves__fail_memory(context, error);
   size_t count = 0;
   for (double wider = spacing; count == 0 && wider < m->reach_max && !laves__is_cancelled(context); wider *= 2)

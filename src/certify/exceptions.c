@@ -5,12 +5,13 @@
  *
  * The cause is read from the domain's surface near the place: thin, when walking a size inwards from the nearest point of the
  * surface comes out of the solid; a crease, when the surface's radius of curvature there is below half an edge; curved,
- * below two. Sizes are those of the edges near the place: the mean edge of the mesh times the power of two nearest to the
- * mean edge of the boundary there. */
+ * below two. Where features were looked for, a tet with an edge on a crease that cannot be divided into angles of the window has
+ * that crease for its cause, and its angle is told. Sizes are those of the edges near the place: the mean edge of the mesh times
+ * the power of two nearest to the mean edge of the boundary there. */
 #include <string.h>
 
 #include "base/predicates.h"
-#include "certify/certify.h"
+#include "certify/check_features.h"
 
 /* Radii of curvature in sizes. A crease shows as about a quarter of the scale at which it is looked at; see curvature.c. */
 #define CREASE_RADIUS 0.5
@@ -25,6 +26,7 @@ typedef struct listing {
   const laves_mesh *mesh;
   const laves_domain *domain; /* or NULL */
   const laves__survey *survey;
+  const laves__feature_findings *features; /* or NULL */
   laves_certificate *c;
   double size;    /* of the mesh's edges */
   bool is_graded; /* somewhere the size is another */
@@ -97,6 +99,9 @@ static bool is_thin(const listing *l, laves__vec3 local, double size) {
   return false;
 }
 
+/* Whether tets at a crease of this angle may have to leave a window: where two share it, each has half. */
+static bool forces(double crease_angle, double min_dihedral) { return crease_angle < 2 * min_dihedral; }
+
 static laves_cause cause_of(const listing *l, laves__vec3 place, double curvature_radius) {
   if (!l->domain || !v3_finite(place)) return LAVES_CAUSE_UNKNOWN;
   const double size = size_at(l, place);
@@ -111,9 +116,18 @@ static void add(const listing *l, laves_exception_kind kind, laves__vec3 place, 
                 double curvature_radius) {
   laves_certificate *c = l->c;
   laves_exception *e = &c->exceptions[c->exception_count++];
-  *e = (laves_exception){.kind = kind, .value = value, .limit = limit, .index = index, .curvature_radius = curvature_radius};
+  *e = (laves_exception){
+      .kind = kind, .value = value, .limit = limit, .index = index, .curvature_radius = curvature_radius, .crease_angle = NAN};
   memcpy(e->place, &place, sizeof place);
   e->cause = kind == LAVES_EXCEPTION_THIN ? LAVES_CAUSE_THIN : cause_of(l, place, curvature_radius);
+}
+
+/* The same for a tet outside a window that begins at min_dihedral. */
+static void add_tet(const listing *l, laves_exception_kind kind, const laves_place *p, double limit, double min_dihedral) {
+  add(l, kind, v3(p->place[0], p->place[1], p->place[2]), p->value, limit, p->tet, p->curvature_radius);
+  laves_exception *e = &l->c->exceptions[l->c->exception_count - 1];
+  if (l->features) e->crease_angle = laves__feature_angle_at(l->features, p->tet);
+  if (forces(e->crease_angle, min_dihedral)) e->cause = LAVES_CAUSE_CREASE;
 }
 
 static double curvature_at(const listing *l, laves__vec3 place) {
@@ -180,10 +194,7 @@ static laves_result list_window(const listing *l, laves_exception_kind kind, con
                                                  w->volume_length, places, LAVES_PLACE_CAPACITY, &count, error);
   if (result != LAVES_OK) return result;
   l->c->exception_counts[kind] = count;
-  for (size_t i = 0; i < at_most_listed(count); i++) {
-    const laves_place *p = &places[i];
-    add(l, kind, v3(p->place[0], p->place[1], p->place[2]), p->value, limit_of(w, p->value), p->tet, p->curvature_radius);
-  }
+  for (size_t i = 0; i < at_most_listed(count); i++) add_tet(l, kind, &places[i], limit_of(w, places[i].value), w->min_dihedral);
   return LAVES_OK;
 }
 
@@ -259,12 +270,55 @@ static void list_thin(const listing *l) {
   }
 }
 
+/* ---- features ---- */
+
+/* That a feature is lost needs another cause than that it is one. */
+static void add_feature(const listing *l, laves_exception_kind kind, const laves_feature_place *p, double limit) {
+  const laves__vec3 place = v3(p->place[0], p->place[1], p->place[2]);
+  add(l, kind, place, p->distance, limit, -1, curvature_at(l, place));
+  laves_exception *e = &l->c->exceptions[l->c->exception_count - 1];
+  e->crease_angle = p->angle;
+  if (e->cause != LAVES_CAUSE_THIN) e->cause = LAVES_CAUSE_UNKNOWN;
+}
+
+static void list_lost(const listing *l, laves_exception_kind kind, laves_feature_fault fault, double limit) {
+  const laves__feature_places *lost = &l->features->places[fault];
+  l->c->exception_counts[kind] = lost->count;
+  for (size_t i = 0; i < at_most_listed(lost->count); i++) add_feature(l, kind, &lost->items[i], limit);
+}
+
+/* Creases that are sharper than either window allows. The sharpest come first. */
+static void list_sharp(const listing *l) {
+  const laves_certificate *c = l->c;
+  const laves__feature_places *sharp = &l->features->places[LAVES_FEATURE_FAULT_SHARP];
+  const double limit = fmax(c->asked_min_dihedral, c->promised_min_dihedral);
+  for (size_t i = 0; i < sharp->count && sharp->items[i].angle < limit; i++) {
+    const laves_feature_place *p = &sharp->items[i];
+    const laves__vec3 place = v3(p->place[0], p->place[1], p->place[2]);
+    if (l->c->exception_counts[LAVES_EXCEPTION_SHARP_INPUT]++ >= LAVES_PLACE_CAPACITY) continue;
+    add(l, LAVES_EXCEPTION_SHARP_INPUT, place, p->angle, limit, p->index, curvature_at(l, place));
+    laves_exception *e = &l->c->exceptions[l->c->exception_count - 1];
+    e->crease_angle = p->angle;
+    e->cause = LAVES_CAUSE_CREASE;
+  }
+}
+
+static void list_features(const listing *l) {
+  if (!l->features) return;
+  const laves_feature_check *check = &l->c->features;
+  list_lost(l, LAVES_EXCEPTION_CREASE_LOST, LAVES_FEATURE_FAULT_CREASE, check->tolerance);
+  list_lost(l, LAVES_EXCEPTION_CORNER_LOST, LAVES_FEATURE_FAULT_CORNER, 0);
+  list_sharp(l);
+}
+
 laves_result laves__list_exceptions(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
-                                    const laves__survey *survey, laves_certificate *certificate, laves_error *error) {
+                                    const laves__survey *survey, const laves__feature_findings *features,
+                                    laves_certificate *certificate, laves_error *error) {
   listing l = {.context = context,
                .mesh = mesh,
                .domain = domain,
                .survey = survey,
+               .features = features,
                .c = certificate,
                .size = certificate->check.edge_mean};
   const limits asked = {certificate->asked_min_dihedral, certificate->asked_max_dihedral, certificate->asked_volume_length};
@@ -277,5 +331,6 @@ laves_result laves__list_exceptions(laves_context *context, const laves_mesh *me
   if (result != LAVES_OK) return result;
   list_off_surface(&l);
   list_thin(&l);
+  list_features(&l);
   return LAVES_OK;
 }

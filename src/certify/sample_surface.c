@@ -232,15 +232,15 @@ static bool list_blocks(search *s) {
 }
 
 /* Appends what a block has found; a sample stands for the area of a cell's side. */
-static size_t append(const search *s, size_t in_wave, laves__surface_sample *samples, size_t count, size_t capacity) {
+static size_t append(const search *s, size_t in_wave, laves__domain_sample *samples, size_t count, size_t capacity) {
   const double weight = ldexp(1, -2 * s->blocks[s->first + in_wave].depth);
   for (size_t k = 0; k < s->found_counts[in_wave] && count < capacity; k++)
-    samples[count++] = (laves__surface_sample){s->found[in_wave * BLOCK_CELLS + k], weight};
+    samples[count++] = (laves__domain_sample){s->found[in_wave * BLOCK_CELLS + k], weight};
   return count;
 }
 
 size_t laves__sample_surface(laves_context *context, const laves__oracle *oracle, const laves__boundary_tree *tree,
-                             double spacing, laves__surface_sample *samples, size_t capacity) {
+                             double spacing, laves__domain_sample *samples, size_t capacity) {
   search s = {.context = context, .oracle = oracle, .tree = tree, .spacing = spacing};
   size_t count = 0;
   const bool listed = list_blocks(&s);

@@ -50,8 +50,9 @@ static void compare_count(comparing *c, const laves__member *m, size_t stated, s
 }
 
 static void compare_numbers(comparing *c, const laves__member *m, const double *stated, const double *found) {
-  const bool is_length = m->proof == LAVES__PROOF_LENGTH || m->proof == LAVES__PROOF_SURFACE;
-  const double tolerance = m->proof == LAVES__PROOF_SURFACE ? SURFACE_CLOSE : CLOSE;
+  const bool by_surface = m->proof == LAVES__PROOF_SURFACE || m->proof == LAVES__PROOF_FEATURE;
+  const bool is_length = m->proof == LAVES__PROOF_LENGTH || by_surface;
+  const double tolerance = by_surface ? SURFACE_CLOSE : CLOSE;
   for (size_t i = 0; i < m->count; i++) {
     if (same_number(stated[i], found[i], tolerance, is_length ? c->found->check.edge_mean : 0)) continue;
     differ(c, "%s.%s: the certificate says %.12g, and it is %.12g", m->group, m->name, stated[i], found[i]);
@@ -88,6 +89,11 @@ static void compare_member(comparing *c, const laves__member *m) {
   }
 }
 
+/* Whether the same features can be looked for again. */
+static bool has_features(const comparing *c) {
+  return c->has_surface && c->stated->check.has_distance && c->stated->has_features && !c->stated->features_drawn;
+}
+
 /* Whether a member can be recomputed with what is at hand. */
 static bool has_proof(const comparing *c, const laves__member *m) {
   switch (m->proof) {
@@ -95,6 +101,8 @@ static bool has_proof(const comparing *c, const laves__member *m) {
       return false;
     case LAVES__PROOF_SURFACE:
       return c->has_surface && c->stated->check.has_distance;
+    case LAVES__PROOF_FEATURE:
+      return has_features(c);
     case LAVES__PROOF_INPUT:
       return c->has_input && c->stated->has_input;
     default:
@@ -108,17 +116,26 @@ static bool needs_surface(laves_exception_kind kind) {
   return kind == LAVES_EXCEPTION_DISTANT || kind == LAVES_EXCEPTION_OFF_SURFACE || kind == LAVES_EXCEPTION_THIN;
 }
 
+static bool needs_features(laves_exception_kind kind) { return kind >= LAVES_EXCEPTION_CREASE_LOST; }
+
+static bool can_compare(const comparing *c, laves_exception_kind kind) {
+  if (needs_features(kind)) return has_features(c);
+  return !needs_surface(kind) || (c->has_surface && c->stated->check.has_distance);
+}
+
 /* The next listed exception from number `i` on that can be compared; their count when there is none. */
 static size_t next_listed(const comparing *c, const laves_certificate *of, size_t i) {
-  while (i < of->exception_count && needs_surface(of->exceptions[i].kind) && !(c->has_surface && c->stated->check.has_distance))
-    i++;
+  while (i < of->exception_count && !can_compare(c, of->exceptions[i].kind)) i++;
   return i;
 }
 
 static bool same_exception(const comparing *c, const laves_exception *a, const laves_exception *b) {
-  const double tolerance = needs_surface(a->kind) ? SURFACE_CLOSE : CLOSE, edge = c->found->check.edge_mean;
+  const double tolerance = needs_surface(a->kind) || needs_features(a->kind) ? SURFACE_CLOSE : CLOSE,
+               edge = c->found->check.edge_mean;
   bool same = a->kind == b->kind && a->index == b->index && same_number(a->value, b->value, tolerance, edge);
-  if (c->has_surface && c->stated->has_input) same = same && a->cause == b->cause;
+  /* Where a crease was drawn that is not at hand, the cause that it is cannot be found again. */
+  if (c->has_surface && c->stated->has_input && !c->stated->features_drawn) same = same && a->cause == b->cause;
+  if (has_features(c)) same = same && same_number(a->crease_angle, b->crease_angle, SURFACE_CLOSE, 0);
   for (int i = 0; i < 3; i++) same = same && same_number(a->place[i], b->place[i], tolerance, edge);
   return same;
 }
@@ -126,11 +143,13 @@ static bool same_exception(const comparing *c, const laves_exception *a, const l
 static void compare_exceptions(comparing *c) {
   const laves_certificate *stated = c->stated, *found = c->found;
   for (int kind = 0; kind < LAVES_EXCEPTION_COUNT; kind++) {
-    if (needs_surface((laves_exception_kind)kind) && !(c->has_surface && stated->check.has_distance)) continue;
+    if (!can_compare(c, (laves_exception_kind)kind)) continue;
     if (stated->exception_counts[kind] != found->exception_counts[kind])
       differ(c, "exceptions.counts.%s: the certificate says %zu, and it is %zu", laves_exception_key((laves_exception_kind)kind),
              stated->exception_counts[kind], found->exception_counts[kind]);
   }
+  if (has_features(c) && !found->has_features)
+    differ(c, "features: the certificate tells of creases or corners, and the surface has none");
   size_t i = next_listed(c, stated, 0), j = next_listed(c, found, 0);
   for (; i < stated->exception_count && j < found->exception_count;
        i = next_listed(c, stated, i + 1), j = next_listed(c, found, j + 1))
@@ -153,6 +172,10 @@ static laves_certify_options options_of(const laves_certificate *stated, const l
   options.min_dihedral = stated->asked_min_dihedral;
   options.max_dihedral = stated->asked_max_dihedral;
   options.volume_length = stated->asked_volume_length;
+  const laves_feature_check *features = &stated->features;
+  if (stated->has_features && features->angle >= 1 && features->angle <= 179) options.feature_angle = features->angle;
+  if (stated->has_features && features->size > 0 && isfinite(features->size)) options.feature_size = features->size;
+  options.feature_tags = stated->has_features && stated->features_tags;
   return options;
 }
 

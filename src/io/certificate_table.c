@@ -7,22 +7,23 @@ const char *const laves__method_names[] = {"auto", "snap", "stuff", NULL};
 #define FLAG_AT(member) offsetof(laves_certificate, member)
 
 const laves__member_group laves__certificate_groups[] = {
-    {"mesh", 0},
-    {"validity", 0},
-    {"topology", 0},
-    {"measures", 0},
-    {"min_dihedral", 0},
-    {"max_dihedral", 0},
-    {"radius_ratio", 0},
-    {"radius_edge", 0},
-    {"volume_length", 0},
-    {"tiles", 0},
-    {"window", 0},
-    {"promise", FLAG_AT(has_promise)},
-    {"asked", 0},
-    {"distance", FLAG_AT(check.has_distance)},
-    {"input", FLAG_AT(has_input)},
-    {"making", FLAG_AT(has_options)},
+    {"mesh", 0, false},
+    {"validity", 0, false},
+    {"topology", 0, false},
+    {"measures", 0, false},
+    {"min_dihedral", 0, false},
+    {"max_dihedral", 0, false},
+    {"radius_ratio", 0, false},
+    {"radius_edge", 0, false},
+    {"volume_length", 0, false},
+    {"tiles", 0, false},
+    {"window", 0, false},
+    {"promise", FLAG_AT(has_promise), false},
+    {"asked", 0, false},
+    {"distance", FLAG_AT(check.has_distance), false},
+    {"features", FLAG_AT(has_features), true},
+    {"input", FLAG_AT(has_input), false},
+    {"making", FLAG_AT(has_options), false},
 };
 const size_t laves__certificate_group_count = LAVES__COUNT_OF(laves__certificate_groups);
 
@@ -41,6 +42,10 @@ _Static_assert(
     offsetof(laves_certificate, attained_max_dihedral) == offsetof(laves_certificate, attained_min_dihedral) + sizeof(double) &&
         offsetof(laves_certificate, promised_max_dihedral) ==
             offsetof(laves_certificate, promised_min_dihedral) + sizeof(double) &&
+        offsetof(laves_certificate, features.away_max_dihedral) ==
+            offsetof(laves_certificate, features.away_min_dihedral) + sizeof(double) &&
+        offsetof(laves_certificate, features.free_max_dihedral) ==
+            offsetof(laves_certificate, features.free_min_dihedral) + sizeof(double) &&
         offsetof(laves_certificate, asked_max_dihedral) == offsetof(laves_certificate, asked_min_dihedral) + sizeof(double) &&
         offsetof(laves_certificate, options.max_dihedral) == offsetof(laves_certificate, options.min_dihedral) + sizeof(double),
     "windows are pairs");
@@ -105,6 +110,29 @@ const laves__member laves__certificate_members[] = {
     TEXT("distance", "from_surface_reason", NONE, from_surface_reason),
     ROW("distance", "distant_from", NUMBER, SURFACE, distance_asked, 1),
     ROW("distance", "off_surface_from", NUMBER, SURFACE, off_surface_asked, 1),
+
+    ROW("features", "angle", NUMBER, NONE, features.angle, 1),
+    ROW("features", "tags", FLAG, NONE, features_tags, 1),
+    ROW("features", "drawn", FLAG, NONE, features_drawn, 1),
+    ROW("features", "size", NUMBER, NONE, features.size, 1),
+    ROW("features", "tolerance", NUMBER, FEATURE, features.tolerance, 1),
+    ROW("features", "creases", COUNT, FEATURE, features.creases, 1),
+    ROW("features", "short_creases", COUNT, FEATURE, features.short_creases, 1),
+    ROW("features", "creases_kept", COUNT, FEATURE, features.creases_kept, 1),
+    ROW("features", "length", NUMBER, FEATURE, features.length, 1),
+    ROW("features", "kept_share", NUMBER, FEATURE, features.kept_share, 1),
+    ROW("features", "to_mesh_max", NUMBER, FEATURE, features.to_mesh_max, 1),
+    ROW("features", "to_mesh_place", NUMBER, NONE, features.to_mesh_place, 3),
+    ROW("features", "corners", COUNT, FEATURE, features.corners, 1),
+    ROW("features", "short_corners", COUNT, FEATURE, features.short_corners, 1),
+    ROW("features", "corners_kept", COUNT, FEATURE, features.corners_kept, 1),
+    ROW("features", "from_mesh_max", NUMBER, FEATURE, features.from_mesh_max, 1),
+    ROW("features", "from_mesh_place", NUMBER, NONE, features.from_mesh_place, 3),
+    ROW("features", "spurious_edges", COUNT, FEATURE, features.spurious, 1),
+    ROW("features", "straddling_faces", COUNT, FEATURE, features.straddling, 1),
+    ROW("features", "sharpest", NUMBER, FEATURE, features.sharpest, 1),
+    ROW("features", "window_away", NUMBER, FEATURE, features.away_min_dihedral, 2),
+    ROW("features", "window_free", NUMBER, FEATURE, features.free_min_dihedral, 2),
 
     TEXT("input", "name", NONE, input_name),
     TEXT("input", "kind", INPUT, input_kind),

@@ -26,6 +26,7 @@ typedef enum laves__member_proof {
   LAVES__PROOF_LENGTH,  /* lengths and places: to 1e-9 of the mean edge and of the coordinate */
   LAVES__PROOF_SURFACE, /* the same with the surface at hand, to 1e-6 */
   LAVES__PROOF_INPUT,   /* equal, with the input at hand */
+  LAVES__PROOF_FEATURE, /* as with the surface, unless the caller drew features: then they are not at hand */
 } laves__member_proof;
 
 typedef struct laves__member {
@@ -35,11 +36,16 @@ typedef struct laves__member {
   size_t offset, count;
 } laves__member;
 
-/* A group is null in the file when the flag at `flag` is not set; 0: it is always there. */
+/* A group is null in the file when the flag at `flag` is not set; 0: it is always there. is_later: in certificates older than it,
+ * it is missing, which means the same. */
 typedef struct laves__member_group {
   const char *name;
   size_t flag;
+  bool is_later;
 } laves__member_group;
+
+/* The first kind of exception that older certificates do not count. */
+enum { LAVES__LATER_EXCEPTION = LAVES_EXCEPTION_CREASE_LOST };
 
 extern const laves__member_group laves__certificate_groups[];
 extern const size_t laves__certificate_group_count;

@@ -144,7 +144,7 @@ static laves_result read_members(const reader *r, const char *group, const json_
 
 static laves_result read_group(const reader *r, const laves__member_group *group, const json_t *root) {
   const json_t *object = json_object_get(root, group->name);
-  if (group->flag && json_is_null(object)) return LAVES_OK;
+  if (group->flag && (json_is_null(object) || (!object && group->is_later))) return LAVES_OK;
   if (!json_is_object(object)) return fail_member(r, "", group->name, "is missing, or is no object");
   if (group->flag) *((bool *)((char *)r->certificate + group->flag)) = true;
   return read_members(r, group->name, object);
@@ -161,6 +161,12 @@ static int find_key(const json_t *value, const char *(*key)(int), int count) {
 static const char *exception_key(int i) { return laves_exception_key((laves_exception_kind)i); }
 static const char *cause_key(int i) { return laves_cause_key((laves_cause)i); }
 
+/* What older certificates do not tell. */
+static bool get_later_number(const json_t *value, double *to) {
+  *to = NAN;
+  return !value || get_number(value, to);
+}
+
 static bool read_exception(const json_t *object, laves_exception *e) {
   const json_t *place = json_object_get(object, "place");
   const int kind = find_key(json_object_get(object, "kind"), exception_key, LAVES_EXCEPTION_COUNT);
@@ -172,16 +178,20 @@ static bool read_exception(const json_t *object, laves_exception *e) {
     if (!get_number(item_of(place, i, 3), &e->place[i])) return false;
   return get_number(json_object_get(object, "value"), &e->value) && get_number(json_object_get(object, "limit"), &e->limit) &&
          get_integer(json_object_get(object, "index"), -1, &e->index) &&
-         get_number(json_object_get(object, "curvature_radius"), &e->curvature_radius);
+         get_number(json_object_get(object, "curvature_radius"), &e->curvature_radius) &&
+         get_later_number(json_object_get(object, "crease_angle"), &e->crease_angle);
 }
 
 static laves_result read_exceptions(const reader *r, const json_t *root) {
   const json_t *object = json_object_get(root, "exceptions");
   const json_t *counts = json_object_get(object, "counts"), *listed = json_object_get(object, "listed");
   laves_certificate *c = r->certificate;
-  for (int i = 0; i < LAVES_EXCEPTION_COUNT; i++)
-    if (!get_count(json_object_get(counts, exception_key(i)), &c->exception_counts[i]))
+  for (int i = 0; i < LAVES_EXCEPTION_COUNT; i++) {
+    const json_t *count = json_object_get(counts, exception_key(i));
+    if (!count && i >= LAVES__LATER_EXCEPTION) continue;
+    if (!get_count(count, &c->exception_counts[i]))
       return fail_member(r, "exceptions.counts", exception_key(i), "must be a count");
+  }
   if (!json_is_array(listed) || json_array_size(listed) > LAVES_EXCEPTION_CAPACITY)
     return fail_member(r, "exceptions", "listed", "must be an array that is not too long");
   for (size_t i = 0; i < json_array_size(listed); i++) {

@@ -132,6 +132,8 @@ static void put_exception(writer *w, const laves_exception *e) {
   put_number(w, e->limit);
   laves__output_printf(&w->out, ", \"index\": %lld, \"curvature_radius\": ", (long long)e->index);
   put_number(w, e->curvature_radius);
+  laves__output_printf(&w->out, ", \"crease_angle\": ");
+  put_number(w, e->crease_angle);
   laves__output_bytes(&w->out, "}", 1);
 }
 

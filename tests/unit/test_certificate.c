@@ -403,6 +403,168 @@ static void graded_tiles(void **state) {
   fixture_folder_remove(folder);
 }
 
+/* ---- features ---- */
+
+static laves_certificate certify_features(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
+                                          double angle, double least) {
+  laves_certify_options options = laves_certify_options_default();
+  options.domain = domain;
+  options.feature_angle = angle;
+  options.min_dihedral = least;
+  return certify(context, mesh, &options);
+}
+
+static laves_domain *cube_domain(laves_context *context) {
+  shape box = shape_box((const double[3]){0, 0, 0}, (const double[3]){4, 4, 4}, 2);
+  laves_domain *domain = domain_of(context, &box);
+  shape_free(&box);
+  return domain;
+}
+
+/* The first exception of a kind; there must be one. */
+static const laves_exception *exception_of(const laves_certificate *c, laves_exception_kind kind) {
+  for (size_t i = 0; i < c->exception_count; i++)
+    if (c->exceptions[i].kind == kind) return &c->exceptions[i];
+  fail_msg("no exception %s", laves_exception_key(kind));
+  return NULL;
+}
+
+static void kept_features(void **state) {
+  laves_mesh *mesh = fixture_cubes(*state, 4, 4, 4, NULL, NULL);
+  laves_domain *domain = cube_domain(*state);
+  laves_certificate c = certify_features(*state, mesh, domain, 40, 40);
+  assert_true(c.has_features && !c.features_tags && !c.features_drawn);
+  assert_int_equal(c.features.creases_kept, 12);
+  assert_int_equal(c.features.corners_kept, 8);
+  assert_float_equal(c.features.kept_share, 1, 1e-12);
+  assert_int_equal(c.exception_count, 0);
+  c = certify_features(*state, mesh, domain, 0, 40);
+  assert_false(c.has_features);
+  c = certify_features(*state, mesh, domain, 120, 40); /* no edge, but each point of the cube is a tip */
+  assert_true(c.has_features && c.features.creases == 0 && c.features.corners == 8);
+  laves_certify_options wrong = laves_certify_options_default();
+  laves_error error;
+  wrong.domain = domain;
+  wrong.feature_angle = 500;
+  assert_int_equal(laves_certify(*state, mesh, &wrong, &c, &error), LAVES_ERROR_OPTION);
+  laves_domain_free(domain);
+  laves_mesh_free(mesh);
+}
+
+/* A corner pushed in takes three creases along; what is stated of it goes through a file, and forgeries are found out. */
+static void lost_features(void **state) {
+  char folder[FIXTURE_FOLDER_MAX], path[FIXTURE_FOLDER_MAX + 20];
+  assert_true(fixture_folder_make(folder));
+  snprintf(path, sizeof path, "%s/a.json", folder);
+  laves_mesh *mesh = fixture_cubes(*state, 4, 4, 4, NULL, NULL);
+  laves_domain *domain = cube_domain(*state);
+  mesh->points[0] = v3(0.25, 0.25, 0.25);
+  const laves_certificate c = certify_features(*state, mesh, domain, 40, 40);
+  assert_int_equal(c.exception_counts[LAVES_EXCEPTION_CREASE_LOST], 3);
+  assert_int_equal(c.exception_counts[LAVES_EXCEPTION_CORNER_LOST], 1);
+  const laves_exception *crease = exception_of(&c, LAVES_EXCEPTION_CREASE_LOST);
+  assert_float_equal(crease->crease_angle, 90, 1e-4);
+  assert_float_equal(crease->value, c.features.to_mesh_max, 1e-12);
+  assert_float_equal(crease->limit, c.features.tolerance, 0);
+  assert_int_equal(crease->cause, LAVES_CAUSE_UNKNOWN);
+  assert_true(isnan(exception_of(&c, LAVES_EXCEPTION_CORNER_LOST)->crease_angle));
+
+  laves_certificate read;
+  laves_difference differences[8];
+  size_t count;
+  assert_int_equal(laves_certificate_write(*state, &c, path, NULL), LAVES_OK);
+  assert_int_equal(laves_certificate_read(*state, path, &read, NULL), LAVES_OK);
+  assert_same(&c, &read);
+  assert_int_equal(laves_certificate_verify(*state, mesh, domain, NULL, &read, differences, 8, &count, NULL), LAVES_OK);
+  if (count) fail_msg("%s", differences[0].text);
+  read.features.creases_kept = 12;
+  read.exception_counts[LAVES_EXCEPTION_CORNER_LOST] = 0;
+  assert_int_equal(laves_certificate_verify(*state, mesh, domain, NULL, &read, differences, 8, &count, NULL), LAVES_OK);
+  assert_int_equal(count, 2);
+  assert_string_equal(differences[0].text, "features.creases_kept: the certificate says 12, and it is 9");
+  /* Without the surface, or with features that somebody drew, nothing of it can be told. */
+  assert_int_equal(laves_certificate_verify(*state, mesh, NULL, NULL, &read, differences, 8, &count, NULL), LAVES_OK);
+  assert_int_equal(count, 0);
+  read.features_drawn = true;
+  assert_int_equal(laves_certificate_verify(*state, mesh, domain, NULL, &read, differences, 8, &count, NULL), LAVES_OK);
+  assert_int_equal(count, 0);
+  /* An angle that none can have asked for. */
+  read = c;
+  read.features.angle = NAN;
+  assert_int_equal(laves_certificate_verify(*state, mesh, domain, NULL, &read, differences, 8, &count, NULL), LAVES_OK);
+  assert_true(count > 0);
+  laves_domain_free(domain);
+  laves_mesh_free(mesh);
+  fixture_folder_remove(folder);
+}
+
+/* Half a cube: two of its edges are 45 degrees wide, which is less than the 50 that are asked for. */
+static void sharp_input(void **state) {
+  static const double points[6][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+  static const uint32_t triangles[8][3] = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
+                                           {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  static const int32_t tets[3][4] = {{0, 1, 2, 3}, {1, 2, 3, 4}, {2, 5, 3, 4}};
+  laves_domain *domain = NULL;
+  laves_mesh *mesh = NULL;
+  assert_int_equal(laves_domain_from_triangles(*state, points[0], 6, triangles[0], 8, NULL, &domain, NULL), LAVES_OK);
+  assert_int_equal(laves_mesh_from_arrays(*state, points[0], 6, tets[0], 3, NULL, &mesh, NULL), LAVES_OK);
+  laves_certificate c = certify_features(*state, mesh, domain, 40, 50);
+  assert_int_equal(c.exception_counts[LAVES_EXCEPTION_SHARP_INPUT], 2);
+  const laves_exception *sharp = exception_of(&c, LAVES_EXCEPTION_SHARP_INPUT);
+  assert_int_equal(sharp->cause, LAVES_CAUSE_CREASE);
+  assert_float_equal(sharp->value, 45, 1e-4);
+  assert_float_equal(sharp->limit, 50, 0);
+  const laves_exception *outside = exception_of(&c, LAVES_EXCEPTION_OUTSIDE_ASKED);
+  assert_int_equal(outside->cause, LAVES_CAUSE_CREASE);
+  assert_float_equal(outside->crease_angle, 45, 1e-4);
+  c = certify_features(*state, mesh, domain, 40, 40);
+  assert_int_equal(c.exception_counts[LAVES_EXCEPTION_SHARP_INPUT], 0);
+  laves_domain_free(domain);
+  laves_mesh_free(mesh);
+}
+
+/* Cuts the text from one place to just before another. */
+static void cut(char *text, const char *from, const char *to) {
+  char *start = strstr(text, from);
+  assert_non_null(start);
+  char *end = strstr(start, to);
+  assert_non_null(end);
+  memmove(start, end, strlen(end) + 1);
+}
+
+/* Certificates of before features were measured: without their group, their counts and their angles. */
+static void older_certificates(void **state) {
+  static char text[1 << 16];
+  char folder[FIXTURE_FOLDER_MAX], path[FIXTURE_FOLDER_MAX + 20];
+  assert_true(fixture_folder_make(folder));
+  snprintf(path, sizeof path, "%s/a.json", folder);
+  laves_mesh *mesh = fixture_cubes(*state, 4, 4, 4, NULL, NULL);
+  laves_domain *domain = cube_domain(*state);
+  mesh->points[0] = v3(0.25, 0.25, 0.25);
+  const laves_certificate c = certify_features(*state, mesh, domain, 0, 50);
+  laves_certificate read;
+  laves_difference differences[8];
+  size_t count;
+  assert_int_equal(laves_certificate_write(*state, &c, path, NULL), LAVES_OK);
+  FILE *file = fopen(path, "r");
+  assert_non_null(file);
+  text[fread(text, 1, sizeof text - 1, file)] = 0;
+  fclose(file);
+  cut(text, "\"features\"", "\"input\"");
+  cut(text, ",\n      \"crease_lost\"", "\n    }");
+  while (strstr(text, ", \"crease_angle\"")) cut(text, ", \"crease_angle\"", "}");
+  laves_error error = {0};
+  if (laves__certificate_parse(text, strlen(text), "old.json", &read, &error) != LAVES_OK) fail_msg("%s", error.text);
+  assert_false(read.has_features);
+  assert_int_equal(read.exception_counts[LAVES_EXCEPTION_CREASE_LOST], 0);
+  assert_true(read.exception_count > 0 && isnan(read.exceptions[0].crease_angle));
+  assert_int_equal(laves_certificate_verify(*state, mesh, domain, NULL, &read, differences, 8, &count, NULL), LAVES_OK);
+  if (count) fail_msg("%s", differences[0].text);
+  laves_domain_free(domain);
+  laves_mesh_free(mesh);
+  fixture_folder_remove(folder);
+}
+
 /* A text that ends amid a character of two bytes is cut before it. */
 static void long_expressions(void **state) {
   char text[400] = "sphere(1) --";
@@ -469,6 +631,10 @@ int main(void) {
       cmocka_unit_test_setup_teardown(bound_of_iterated_feet, set_up, tear_down),
       cmocka_unit_test_setup_teardown(through_a_file, set_up, tear_down),
       cmocka_unit_test_setup_teardown(graded_tiles, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(kept_features, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(lost_features, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(sharp_input, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(older_certificates, set_up, tear_down),
       cmocka_unit_test_setup_teardown(long_expressions, set_up, tear_down),
       cmocka_unit_test_setup_teardown(refused_files, set_up, tear_down),
       cmocka_unit_test_setup_teardown(options_of_ones_own, set_up, tear_down),
