@@ -46,7 +46,7 @@ typedef struct run {
   laves__stuff_counts stuffed;
   const laves__guarantee *guarantee; /* NULL: nothing is promised */
   double counted, kept;              /* tets or vertices before improvement, whichever are asked for; their share after it */
-  bool recounted;                    /* once is enough */
+  int recounts;                      /* how often all was made again for a count */
   int round;                         /* of refinement for the sake of the distance */
   size_t distant;                    /* places still further away than asked */
   bool rough;                        /* the solid is rougher than the size */
@@ -413,13 +413,14 @@ static laves_result make_mesh(run *r, laves_mesh **mesh) {
 /* Where sizes vary or features are kept improvement may cost some per cent of a count that was asked for; then all is made again,
  * once, for a count that is larger by as much. */
 static laves_result count_again(run *r, laves_mesh **mesh, bool *again) {
+  enum { RECOUNTS = 2 };
   static const double tolerance = 0.02;
   const laves_options *o = r->options;
   const double wished = o->tet_target ? (double)o->tet_target : (double)o->vertex_target;
   const double got = o->tet_target ? (double)(*mesh)->tet_count : (double)(*mesh)->vertex_count;
-  *again = (r->sizes || r->frame.features) && has_target(o) && !r->recounted && fabs(got / wished - 1) > tolerance;
+  *again = (r->sizes || r->frame.features) && has_target(o) && r->recounts < RECOUNTS && fabs(got / wished - 1) > tolerance;
   if (!*again) return LAVES_OK;
-  r->recounted = true;
+  r->recounts++;
   r->kept = got / r->counted;
   laves_mesh_free(*mesh);
   *mesh = NULL;

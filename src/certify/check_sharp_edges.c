@@ -138,7 +138,7 @@ static bool lies_across(const laves__feature_findings *f, const int32_t face[3])
   for (int k = 0; k < 3; k++) {
     const int32_t patch = patch_below(f, v3_lerp(corner[k], centroid, inset), &hint);
     if (patch == LAVES__NO_FEATURE || patch == seen) continue;
-    if (seen != LAVES__NO_FEATURE) return true;
+    if (seen != LAVES__NO_FEATURE && !laves__patches_join(f->features, patch, seen)) return true;
     seen = patch;
   }
   return false;
