@@ -219,11 +219,19 @@ static laves_result find_forced(run *r) {
   return LAVES_OK;
 }
 
+/* The smallest size at the boundary. */
+static double least_size(const run *r) {
+  double least = 1;
+  for (size_t v = 0; v < r->layer.vertex_count; v++)
+    if (r->layer.depth[v] == 0) least = fmin(least, laves__layer_scale(&r->layer, (int32_t)v));
+  return least * r->frame.size;
+}
+
 /* What is sharp, or drawn. */
 static laves_result find_features(run *r) {
   const laves_options *o = r->options;
   const laves__feature_wish wish = {
-      .angle = o->feature_angle, .tags = o->feature_tags, .drawn = o->features, .size = r->frame.size};
+      .angle = o->feature_angle, .tags = o->feature_tags, .drawn = o->features, .size = least_size(r)};
   begin_stage(r);
   laves__features_free(&r->features);
   const laves_result result = laves__features_find(r->context, &r->domain->oracle, &wish, &r->features, r->error);
@@ -455,6 +463,7 @@ static laves_result refine_where_distant(run *r, laves_mesh **mesh, bool *again)
 static laves_result judge_features(run *r) {
   laves_report *report = r->report;
   laves__feature_tally tally;
+  report->feature_size = least_size(r);
   report->creases_dropped = r->features.dropped_count;
   report->creases_joined = r->features.joined_count;
   if (!r->frame.features) return LAVES_OK;
