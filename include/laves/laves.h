@@ -717,7 +717,7 @@ typedef struct laves_certify_options {
   // `distances`.
   double feature_angle;  ///< as laves_options.feature_angle; default 0: none are looked for
   bool feature_tags;     ///< as laves_options.feature_tags
-  double feature_size;   ///< as laves_feature_options.size; default 0
+  double feature_size;   ///< as laves_feature_options.size; default 0: that of the mesh's exact tiles, where it has many
   uint32_t cookie;
 } laves_certify_options;
 

@@ -125,21 +125,25 @@ static int32_t patch_below(const laves__feature_findings *f, laves__vec3 p, uint
   return f->features->patch_at(f->features->self, foot, *hint);
 }
 
+/* Parts of one patch that only the end of a crease has split go together. */
+static bool are_apart(const laves__features *features, int32_t a, int32_t b) {
+  return a != LAVES__NO_FEATURE && b != LAVES__NO_FEATURE && !laves__patches_join(features, a, b);
+}
+
 static bool lies_across(const laves__feature_findings *f, const int32_t face[3]) {
   laves__vec3 corner[3];
   double radius = 0;
   uint32_t hint = LAVES__NO_HINT;
-  int32_t seen = LAVES__NO_FEATURE;
+  int32_t patch[3];
   for (int k = 0; k < 3; k++) corner[k] = f->edges.point[face[k]];
   if (!v3_finite(corner[0]) || !v3_finite(corner[1]) || !v3_finite(corner[2])) return false;
   const laves__vec3 centroid = v3_scale(v3_add(corner[0], v3_add(corner[1], corner[2])), 1.0 / 3);
   for (int k = 0; k < 3; k++) radius = fmax(radius, v3_distance(corner[k], centroid));
   if (crease_distance(f->features, centroid, crease_reach * radius) > crease_reach * radius) return false;
   for (int k = 0; k < 3; k++) {
-    const int32_t patch = patch_below(f, v3_lerp(corner[k], centroid, inset), &hint);
-    if (patch == LAVES__NO_FEATURE || patch == seen) continue;
-    if (seen != LAVES__NO_FEATURE) return true;
-    seen = patch;
+    patch[k] = patch_below(f, v3_lerp(corner[k], centroid, inset), &hint);
+    for (int i = 0; i < k; i++)
+      if (are_apart(f->features, patch[i], patch[k])) return true;
   }
   return false;
 }
