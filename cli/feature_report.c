@@ -57,8 +57,8 @@ static void say_mesh_creases(const laves_feature_check *c) {
   if (c->mesh_creases > c->mesh_bent && isfinite(c->from_mesh_max)) {
     say_way("sharp edges of the mesh to creases", c->from_mesh_max, c->diagonal, c->from_mesh_place, NAN);
   }
-  text_say("    %s that are sharp where the solid is not, and %zu where it bends too strongly for the size",
-           text_plural(&edges, c->spurious, "edge"), c->mesh_bent);
+  text_say("    %s that are sharp where the solid is not, and %zu where it bends", text_plural(&edges, c->spurious, "edge"),
+           c->mesh_bent);
   text_say("    %s across creases", text_plural(&faces, c->straddling, "boundary face"));
 }
 
