@@ -208,8 +208,8 @@ static void write_options(json *out, const settings *given, const laves_options 
   json_close(out);
 }
 
-static void write_features(json *out, const laves_report *report) {
-  json_open_object(out, "features");
+static void write_making(json *out, const laves_report *report) {
+  json_open_object(out, "feature_making");
   json_integer(out, "creases", (int64_t)report->creases);
   json_integer(out, "corners", (int64_t)report->corners);
   json_integer(out, "corners_kept", (int64_t)report->corners_kept);
@@ -237,7 +237,7 @@ static void write_report(json *out, const mesh_run *all) {
   json_integer(out, "stuffed_vertices", (int64_t)report->stuffed_vertices);
   json_integer(out, "relaxed_vertices", (int64_t)report->relaxed_vertices);
   json_number(out, "relaxed_max", report->relaxed_max);
-  write_features(out, report);
+  write_making(out, report);
 }
 
 static void mesh_json(json *out, const session *run, const void *facts) {

@@ -46,7 +46,7 @@ typedef struct run {
   laves__stuff_counts stuffed;
   const laves__guarantee *guarantee; /* NULL: nothing is promised */
   double counted, kept;              /* tets or vertices before improvement, whichever are asked for; their share after it */
-  bool recounted;                    /* once is enough */
+  int recounts;                      /* how often all was made again for a count */
   int round;                         /* of refinement for the sake of the distance */
   size_t distant;                    /* places still further away than asked */
   bool rough;                        /* the solid is rougher than the size */
@@ -219,11 +219,19 @@ static laves_result find_forced(run *r) {
   return LAVES_OK;
 }
 
+/* The smallest size at the boundary. */
+static double least_size(const run *r) {
+  double least = 1;
+  for (size_t v = 0; v < r->layer.vertex_count; v++)
+    if (r->layer.depth[v] == 0) least = fmin(least, laves__layer_scale(&r->layer, (int32_t)v));
+  return least * r->frame.size;
+}
+
 /* What is sharp, or drawn. */
 static laves_result find_features(run *r) {
   const laves_options *o = r->options;
   const laves__feature_wish wish = {
-      .angle = o->feature_angle, .tags = o->feature_tags, .drawn = o->features, .size = r->frame.size};
+      .angle = o->feature_angle, .tags = o->feature_tags, .drawn = o->features, .size = least_size(r)};
   begin_stage(r);
   laves__features_free(&r->features);
   const laves_result result = laves__features_find(r->context, &r->domain->oracle, &wish, &r->features, r->error);
@@ -413,13 +421,14 @@ static laves_result make_mesh(run *r, laves_mesh **mesh) {
 /* Where sizes vary or features are kept improvement may cost some per cent of a count that was asked for; then all is made again,
  * once, for a count that is larger by as much. */
 static laves_result count_again(run *r, laves_mesh **mesh, bool *again) {
+  enum { RECOUNTS = 2 };
   static const double tolerance = 0.02;
   const laves_options *o = r->options;
   const double wished = o->tet_target ? (double)o->tet_target : (double)o->vertex_target;
   const double got = o->tet_target ? (double)(*mesh)->tet_count : (double)(*mesh)->vertex_count;
-  *again = (r->sizes || r->frame.features) && has_target(o) && !r->recounted && fabs(got / wished - 1) > tolerance;
+  *again = (r->sizes || r->frame.features) && has_target(o) && r->recounts < RECOUNTS && fabs(got / wished - 1) > tolerance;
   if (!*again) return LAVES_OK;
-  r->recounted = true;
+  r->recounts++;
   r->kept = got / r->counted;
   laves_mesh_free(*mesh);
   *mesh = NULL;
@@ -454,6 +463,7 @@ static laves_result refine_where_distant(run *r, laves_mesh **mesh, bool *again)
 static laves_result judge_features(run *r) {
   laves_report *report = r->report;
   laves__feature_tally tally;
+  report->feature_size = least_size(r);
   report->creases_dropped = r->features.dropped_count;
   report->creases_joined = r->features.joined_count;
   if (!r->frame.features) return LAVES_OK;

@@ -359,6 +359,7 @@ typedef struct laves_report {
   size_t relaxed_vertices;  ///< those of them that a guarantee above 14.4 degrees moved off the surface
   double relaxed_max;       ///< the furthest such move, units of the input
   // Features that were to be kept (docs/features.md); all zero where there are none.
+  double feature_size;       ///< the smallest size at the boundary: shorter creases are roughness
   size_t creases, corners;   ///< of the solid, at this size
   size_t corners_kept;       ///< that are vertices of the mesh at exactly their place
   double crease_length;      ///< of all creases, units of the input

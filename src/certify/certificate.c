@@ -148,7 +148,7 @@ static laves_feature_options asked_features(const laves_certify_options *options
   asked.angle = making ? making->feature_angle : options->feature_angle;
   asked.tags = making ? making->feature_tags : options->feature_tags;
   asked.features = making ? making->features : NULL;
-  asked.size = making && options->report ? options->report->size : options->feature_size;
+  asked.size = making && options->report ? options->report->feature_size : options->feature_size;
   if (!(asked.size > 0)) asked.size = size_by_tiles(c);
   return asked;
 }

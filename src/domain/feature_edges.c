@@ -23,6 +23,8 @@ static const double confirm_share = 0.75; /* of the angle: what the means must s
 static const double surely_sharp = 70;    /* degrees: an edge that turns by more is sharp whatever is beside it */
 static const double facet_height = 2.5;   /* sizes */
 static const double blunt_share = 0.5;    /* of the angle: what a join may follow */
+static const double faded_share = 0.3;    /* of the angle: what a crease that fades away may follow */
+static const double fade_length = 4;      /* sizes: how long it is by then */
 static const double join_range = 2;       /* sizes: how long it may be */
 static const double join_cosine = 0.766;  /* it goes on within 40 degrees of its direction */
 static const double short_end = 2;        /* sizes: a dangling end below that goes */
@@ -203,6 +205,13 @@ static laves__vec3 direction_of(const laves__feature_edges *e, uint32_t h) {
   return v3_unit(v3_sub(e->surface->points[end_of(e, h)], e->surface->points[start_of(e, h)]));
 }
 
+/* The crease edge at a point other than the one that came in, as it leaves. */
+static uint32_t other_crease(const laves__feature_edges *e, uint32_t p, uint32_t from) {
+  for (uint32_t k = e->first[p], h; (h = crease_at(e, p, &k)) != LAVES__NONE;)
+    if (end_of(e, h) != from) return h;
+  return LAVES__NONE;
+}
+
 /* ---- joins ---- */
 
 /* The edge that goes on from a point in a direction, the straightest of those that are blunt creases; NONE: there is none. */
@@ -212,50 +221,66 @@ static uint32_t goes_on(const laves__feature_edges *e, uint32_t p, laves__vec3 d
   for (uint32_t k = e->first[p]; k < e->first[p + 1]; k++) {
     const uint32_t h = e->at[k];
     const double along = v3_dot(direction_of(e, h), direction);
-    if (along <= straightest || !is_turned(e, h, cosine)) continue;
+    if (along <= straightest || !is_turned(e, h, cosine) || is_bend(e, h, -1)) continue;
     straightest = along;
     best = h;
   }
   return best;
 }
 
-/* Follows blunt edges from the end of a crease; true when another is met, with the way in path[0 .. *count). */
-static bool find_join(const laves__feature_edges *e, uint32_t p, double cosine, uint32_t path[JOIN_STEPS], int *count) {
+/* Follows blunt edges from the end of a crease: the way is in path[0 .. result), and *meets tells whether it ends at another. */
+static int follow_blunt(const laves__feature_edges *e, uint32_t p, double cosine, double range, uint32_t path[JOIN_STEPS],
+                        bool *meets) {
   laves__vec3 direction = v3_scale(direction_of(e, only_crease(e, p)), -1);
   double length = 0;
-  for (*count = 0; *count < JOIN_STEPS;) {
+  *meets = false;
+  for (int count = 0; count < JOIN_STEPS; count++) {
     const uint32_t h = goes_on(e, p, direction, cosine);
-    if (h == LAVES__NONE) return false;
+    if (h == LAVES__NONE) return count;
     length += length_of(e, h);
-    if (length > join_range * e->wish->size) return false;
-    path[(*count)++] = h;
+    if (length > range) return count;
+    path[count] = h;
     direction = direction_of(e, h);
     p = end_of(e, h);
-    if (e->degree[p] > 0) return true;
+    *meets = e->degree[p] > 0;
+    if (*meets) return count + 1;
   }
-  return false;
+  return JOIN_STEPS;
 }
 
+/* The length of the crease that ends at a point, as far as it matters. */
+static double length_behind(const laves__feature_edges *e, uint32_t p, double enough) {
+  double length = 0;
+  uint32_t h = only_crease(e, p), from = p;
+  while (h != LAVES__NONE && length < enough) {
+    length += length_of(e, h);
+    const uint32_t at = end_of(e, h);
+    if (e->degree[at] != 2) break;
+    h = other_crease(e, at, from);
+    from = at;
+  }
+  return length;
+}
+
+/* Closes gaps; a crease of some length that fades away goes on as long as it can still be seen. */
 static void join(laves__feature_edges *e) {
   if (!(e->wish->angle > 0)) return;
-  const double cosine = cosine_of(blunt_share * e->wish->angle);
+  const double blunt = cosine_of(blunt_share * e->wish->angle), faded = cosine_of(faded_share * e->wish->angle);
   for (uint32_t p = 0; p < e->surface->point_count; p++) {
     uint32_t path[JOIN_STEPS];
-    int count;
-    if (e->degree[p] != 1 || only_crease(e, p) == LAVES__NONE || !find_join(e, p, cosine, path, &count)) continue;
+    bool meets;
+    if (e->degree[p] != 1 || only_crease(e, p) == LAVES__NONE) continue;
+    int count = follow_blunt(e, p, blunt, join_range * e->wish->size, path, &meets);
+    e->joined += meets;
+    if (!meets && length_behind(e, p, fade_length * e->wish->size) >= fade_length * e->wish->size)
+      count = follow_blunt(e, p, faded, HUGE_VAL, path, &meets);
+    else if (!meets)
+      count = 0;
     for (int i = 0; i < count; i++) set_crease(e, path[i], true);
-    e->joined++;
   }
 }
 
 /* ---- noise ---- */
-
-/* The crease edge at a point other than the one that came in, as it leaves. */
-static uint32_t other_crease(const laves__feature_edges *e, uint32_t p, uint32_t from) {
-  for (uint32_t k = e->first[p], h; (h = crease_at(e, p, &k)) != LAVES__NONE;)
-    if (end_of(e, h) != from) return h;
-  return LAVES__NONE;
-}
 
 /* Takes away the way from a loose end to the next branch, if it is short. */
 static void prune_end(laves__feature_edges *e, uint32_t p) {

@@ -13,7 +13,7 @@
 #include "domain/feature_seam.h"
 
 static const double tip_defect = 1;  /* radians */
-static const double tip_edges = 0.5; /* sizes: an edge of a tip is longer */
+static const double tip_edges = 0.5; /* sizes: all edges of a tip are longer */
 static const double turn = 6.283185307179586, degrees = 57.29577951308232;
 
 typedef struct patches {
@@ -106,16 +106,16 @@ static bool add_segments(const laves__feature_edges *e, const patches *p, laves_
 /* Whether a point with these faces around it is a tip. */
 static bool is_tip(const laves__feature_edges *e, uint32_t point) {
   const laves__surface *s = e->surface;
-  double missing = turn, longest = 0;
+  double missing = turn, shortest = HUGE_VAL;
   if (e->degree[point] > 0 || s->doubtful_points[point] || e->first[point] == e->first[point + 1]) return false;
   for (uint32_t k = e->first[point]; k < e->first[point + 1]; k++) {
     const uint32_t h = e->at[k], *face = s->faces[h / 3];
     const laves__vec3 o = s->points[point], u = v3_sub(s->points[face[(h % 3 + 1) % 3]], o);
     const laves__vec3 v = v3_sub(s->points[face[(h % 3 + 2) % 3]], o);
     missing -= laves__angle(v3_norm(v3_cross(u, v)), v3_dot(u, v));
-    longest = fmax(longest, v3_norm(u));
+    shortest = fmin(shortest, v3_norm(u));
   }
-  return missing > tip_defect && longest > tip_edges * e->wish->size;
+  return missing > tip_defect && shortest > tip_edges * e->wish->size;
 }
 
 static bool add_tips(const laves__feature_edges *e, const patches *p, laves__feature_lines *lines, uint32_t *index) {

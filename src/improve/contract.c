@@ -232,9 +232,12 @@ static bool contract(const contraction *c, laves__layer *layer, int32_t a, int32
   if (!find_ring(layer, a, b, &r) || !keeps_topology(layer, a, b, &r)) return false;
   const double before = fmin(laves__star_quality(layer, a), laves__star_quality(layer, b));
   const int faults = held ? faults_around(c, layer, a, b, &r) : 0;
+  const bool on_crease = held && layer->hold[b].kind == LAVES__HOLD_CREASE;
+  const double sag = on_crease ? fmax(laves__crease_sag(c->frame, layer, a), laves__crease_sag(c->frame, layer, b)) : 0;
   const bool good = try_contraction(c, layer, a, b, &r, before, j) &&
                     (layer->depth[a] != 0 || keeps_surface(c, layer, a, b, &r, before, j)) &&
-                    (!held || faults_around(c, layer, a, b, &r) <= faults);
+                    (!held || faults_around(c, layer, a, b, &r) <= faults) &&
+                    (!on_crease || laves__crease_sag(c->frame, layer, a) <= fmax(sag, LAVES__SAG_LIMIT));
   if (!good) laves__journal_undo(j, layer);
   laves__journal_clear(j);
   return good;

@@ -95,6 +95,34 @@ int laves__feature_faults(const laves__frame *frame, const laves__layer *layer, 
   return faults + (missing < 0 ? -missing : missing);
 }
 
+/* Whether a vertex is a corner of an earlier tet of a star. */
+static bool seen_before(const laves__layer *layer, const laves__star *star, int count, int32_t vertex) {
+  for (int i = 0; i < count; i++)
+    if (laves__layer_corner(layer, star->tet[i], vertex) >= 0) return true;
+  return false;
+}
+
+double laves__crease_sag(const laves__frame *frame, const laves__layer *layer, int32_t vertex) {
+  const laves__star *star = &layer->star[vertex];
+  const double scale = laves__layer_scale(layer, vertex);
+  double sag = 0;
+  if (laves__layer_hold(layer, vertex).kind < LAVES__HOLD_CREASE) return 0;
+  for (int i = 0; i < star->count; i++)
+    for (int k = 0; k < 4; k++) {
+      const int32_t w = layer->tet[star->tet[i]][k];
+      if (w == vertex || layer->depth[w] != 0 || layer->hold[w].kind < LAVES__HOLD_CREASE) continue;
+      const int32_t crease = laves__holds_crease(frame->features, layer->hold[vertex], layer->hold[w]);
+      if (crease == LAVES__NO_FEATURE || seen_before(layer, star, i, w)) continue;
+      const laves__hold hold = {crease, LAVES__HOLD_CREASE};
+      const laves__vec3 middle = v3_lerp(layer->position[vertex], layer->position[w], 0.5);
+      laves__vec3 foot, tangent;
+      uint32_t hint = LAVES__NO_HINT;
+      if (laves__frame_project_held(frame, hold, middle, scale, &hint, &foot, &tangent))
+        sag = fmax(sag, v3_distance(foot, middle) / scale);
+    }
+  return sag;
+}
+
 bool laves__may_merge(const laves__frame *frame, const laves__layer *layer, int32_t gone, int32_t into) {
   if (!layer->hold || layer->depth[gone] != 0) return true;
   const laves__hold from = layer->hold[gone], to = layer->hold[into];

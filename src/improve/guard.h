@@ -17,6 +17,13 @@ bool laves__is_crease_edge(const laves__frame *frame, const laves__layer *layer,
  * creases end at a corner). Zero where there are no features. */
 int laves__feature_faults(const laves__frame *frame, const laves__layer *layer, int32_t vertex);
 
+/* Local sizes: how far from a crease the edges along it may come to lie. The vertices of a crease with a radius of r sizes are
+ * then at most sqrt(8 r / 25) sizes apart. */
+#define LAVES__SAG_LIMIT 0.04
+
+/* How far from their crease the middles of the boundary edges along it are, that leave a vertex on a crease; local sizes. */
+double laves__crease_sag(const laves__frame *frame, const laves__layer *layer, int32_t vertex);
+
 /* Whether a vertex may be merged into another along a boundary edge, as far as their holds tell. */
 bool laves__may_merge(const laves__frame *frame, const laves__layer *layer, int32_t gone, int32_t into);
 

@@ -351,9 +351,9 @@ static void leave_out_sharp(work *w, const laves__window *window) {
     if (f->crease[i].least_angle < w->measure.sharper_than) w->measure.sharp = f;
 }
 
-/* Creases and corners first: their vertices go where they belong, as far as tets allow, and smoothing and contraction make room
- * for the rest of the way. Then all is as on the tiling, with flips. */
-static laves_result mend_features(work *w, bool brief, laves_error *error) {
+/* Creases and corners come first: their vertices go where they belong, as far as tets allow, and smoothing and contraction make
+ * room for the rest of the way. */
+static laves_result bring_home(work *w, laves_error *error) {
   enum { ROUNDS = 6, SMOOTH_ROUNDS = 2 };
   static const double home_floor = 0.05; /* quality that coming home may cost: about 9 degrees */
   laves_result result = run_passes(w, 1, 1, error);
@@ -363,7 +363,7 @@ static laves_result mend_features(work *w, bool brief, laves_error *error) {
     result = run_passes(w, 1, 1, error);
   }
   w->rounds = 0;
-  return result == LAVES_OK ? mend_tiling(w, brief, error) : result;
+  return result;
 }
 
 /* After features were let go of: only what is far outside, and what was freed, which is off the surface. */
@@ -380,8 +380,9 @@ static laves_result mend_again(work *w, laves_error *error) {
 /* The schedule for what the layer is. */
 static laves_result mend_all(work *w, const laves__window *window, laves_error *error) {
   if (window->again) return mend_again(w, error);
-  if (w->layer->scale) return mend_graded(w, error);
-  return w->layer->hold ? mend_features(w, window->brief, error) : mend_tiling(w, window->brief, error);
+  const laves_result result = w->layer->hold ? bring_home(w, error) : LAVES_OK;
+  if (result != LAVES_OK) return result;
+  return w->layer->scale ? mend_graded(w, error) : mend_tiling(w, window->brief, error);
 }
 
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {

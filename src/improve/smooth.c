@@ -16,6 +16,7 @@
 #include "improve/smooth.h"
 
 #include "base/predicates.h"
+#include "improve/guard.h"
 
 enum {
   TERMS_MAX = 640,    /* functions in a bundle; more are left out (a star of 50 tets has 650, and few are active) */
@@ -213,6 +214,15 @@ static bool try_place(const laves__measure *m, laves__layer *layer, int32_t vert
   return true;
 }
 
+/* Whether the chords of a crease at a vertex stay near it, or as near as they are, when it moves along. */
+static bool keeps_chords(const laves__frame *frame, laves__layer *layer, int32_t vertex, laves__vec3 place) {
+  const laves__vec3 here = layer->position[vertex];
+  layer->position[vertex] = place;
+  const double sag = laves__crease_sag(frame, layer, vertex);
+  layer->position[vertex] = here;
+  return sag <= LAVES__SAG_LIMIT || sag <= laves__crease_sag(frame, layer, vertex);
+}
+
 bool laves__smooth_vertex(const laves__frame *frame, const laves__measure *m, double target, laves__layer *layer, int32_t vertex,
                           laves__journal *journal) {
   const bool on_surface = layer->depth[vertex] == 0;
@@ -240,6 +250,7 @@ bool laves__smooth_vertex(const laves__frame *frame, const laves__measure *m, do
         there = laves__frame_project_held(frame, hold, place, reach, &hint, &foot, &normal) && v3_distance(foot, place) <= reach;
         place = foot;
       }
+      if (there && hold.kind == LAVES__HOLD_CREASE) there = keeps_chords(frame, layer, vertex, place);
       if (there && try_place(m, layer, vertex, place, least + accept_share * gain, journal)) {
         accepted = moved = true;
         if (on_surface) {
