@@ -259,7 +259,7 @@ static laves_result check_steps(session *run, check_run *all) {
   result = certify(run, all);
   if (result == LAVES_OK) result = find_places(run, all);
   if (result == LAVES_OK && given->check_features)
-    result = feature_report_make(run, all->mesh, all->surface.domain, &all->features);
+    result = feature_report_make(run, all->mesh, all->surface.domain, all->certificate.features.size, &all->features);
   if (result == LAVES_OK) result = verify(run, all);
   all->check_seconds = progress_now() - start;
   all->has_check = result == LAVES_OK;

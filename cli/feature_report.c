@@ -6,10 +6,12 @@
 
 #include "text.h"
 
-laves_result feature_report_make(session *run, const laves_mesh *mesh, const laves_domain *surface, feature_report *report) {
+laves_result feature_report_make(session *run, const laves_mesh *mesh, const laves_domain *surface, double size,
+                                 feature_report *report) {
   const size_t capacity = (size_t)run->given->list;
   laves_feature_options options = laves_feature_options_default();
   options.angle = run->given->feature_angle;
+  options.size = size;
   report->places = calloc(LAVES_FEATURE_FAULT_COUNT * capacity + 1, sizeof *report->places);
   if (!report->places) {
     return session_fail(run, LAVES_ERROR_MEMORY, "no memory for a list of %zu places of features", capacity);
@@ -55,8 +57,8 @@ static void say_mesh_creases(const laves_feature_check *c) {
   if (c->mesh_creases > c->mesh_bent && isfinite(c->from_mesh_max)) {
     say_way("sharp edges of the mesh to creases", c->from_mesh_max, c->diagonal, c->from_mesh_place, NAN);
   }
-  text_say("    %s that are sharp where the solid is not, and %zu where it bends too strongly for the size",
-           text_plural(&edges, c->spurious, "edge"), c->mesh_bent);
+  text_say("    %s that are sharp where the solid is not, and %zu where it bends", text_plural(&edges, c->spurious, "edge"),
+           c->mesh_bent);
   text_say("    %s across creases", text_plural(&faces, c->straddling, "boundary face"));
 }
 

@@ -12,8 +12,9 @@ typedef struct feature_report {
   size_t place_count;
 } feature_report;
 
-/* Checks the features of a mesh against the surface that it was given. */
-laves_result feature_report_make(session *run, const laves_mesh *mesh, const laves_domain *surface, feature_report *report);
+/* Checks the features of a mesh against the surface that it was given. size: as laves_feature_options.size. */
+laves_result feature_report_make(session *run, const laves_mesh *mesh, const laves_domain *surface, double size,
+                                 feature_report *report);
 
 /* A crease that is not short, or a corner, is lost. */
 bool feature_report_misses(const feature_report *report);

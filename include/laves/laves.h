@@ -569,9 +569,9 @@ typedef struct laves_feature_check {
   size_t corners_kept;            ///< a vertex of the mesh stands at exactly that place (1e-9 of the diagonal)
   size_t corners_near;            ///< not that, but an edge passes within 1e-4 of the diagonal; all others are lost
   // The mesh's creases: boundary edges at which its normal turns by more than `angle`.
-  size_t mesh_creases;  ///< how many
-  size_t mesh_bent;  ///< those of them where it is the bend of the solid's surface, not sharp at all, that is too strong for the
-                     ///< size; they are in none of what follows
+  size_t mesh_creases;   ///< how many
+  size_t mesh_bent;      ///< those of them that are the doing of a bend: below the two faces the solid's own normal turns by more
+                         ///< than half of that, on one patch; they are in none of what follows
   double from_mesh_max;  ///< largest distance of an end or middle of one from the solid's nearest crease; INFINITY: it has none
   double from_mesh_place[3];
   size_t spurious;    ///< further away than the tolerance
@@ -718,7 +718,7 @@ typedef struct laves_certify_options {
   // `distances`.
   double feature_angle;  ///< as laves_options.feature_angle; default 0: none are looked for
   bool feature_tags;     ///< as laves_options.feature_tags
-  double feature_size;   ///< as laves_feature_options.size; default 0
+  double feature_size;   ///< as laves_feature_options.size; default 0: that of the mesh's exact tiles, where it has many
   uint32_t cookie;
 } laves_certify_options;
 

@@ -53,6 +53,7 @@ static void fill_edges(const laves_mesh *mesh, const laves__boundary *boundary, 
       e->ends[next][k] = end_of(&sides[i], k);
       e->point[e->ends[next][k]] = v3_sub(mesh->points[e->ends[next][k]], origin);
     }
+    for (int k = 0; k < 2; k++) e->faces[next][k] = (uint32_t)(sides[same > 1 ? i + (size_t)k : i].value / 3);
     e->turn[next] = turn_of(mesh, boundary, &sides[i], same);
     const double length = v3_distance(e->point[e->ends[next][0]], e->point[e->ends[next][1]]);
     if (!isfinite(length)) continue;
@@ -112,9 +113,10 @@ laves_result laves__boundary_edges_find(laves_context *context, const laves_mesh
     goto clean_up;
   }
   edges->ends = laves__alloc(context, edges->count, sizeof *edges->ends);
+  edges->faces = laves__alloc(context, edges->count, sizeof *edges->faces);
   edges->turn = laves__alloc(context, edges->count, sizeof *edges->turn);
   edges->point = laves__alloc(context, mesh->vertex_count, sizeof *edges->point);
-  done = done && edges->ends && edges->turn && edges->point;
+  done = done && edges->ends && edges->faces && edges->turn && edges->point;
   if (done) fill_edges(mesh, boundary, origin, side, sides, edges);
   if (!done || !build_tree(edges)) result = laves__fail_memory(context, error);
 clean_up:
@@ -126,6 +128,7 @@ clean_up:
 void laves__boundary_edges_free(laves__boundary_edges *e) {
   if (!e->context) return;
   laves__free(e->context, e->ends, e->count, sizeof *e->ends);
+  laves__free(e->context, e->faces, e->count, sizeof *e->faces);
   laves__free(e->context, e->turn, e->count, sizeof *e->turn);
   laves__free(e->context, e->point, e->vertex_count, sizeof *e->point);
   laves__free(e->context, e->slot_edge, e->slot_count, sizeof *e->slot_edge);

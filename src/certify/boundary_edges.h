@@ -8,10 +8,11 @@
 typedef struct laves__boundary_edges {
   laves_context *context;
   size_t count;
-  int32_t (*ends)[2]; /* the lower first; ascending by the lower, then by the upper */
-  float *turn;        /* degrees between the normals of the two faces; NAN: there are not two, or one has no area */
-  double mean;        /* length */
-  laves__vec3 *point; /* [vertex_count] relative to `origin`; only those of edges are set */
+  int32_t (*ends)[2];   /* the lower first; ascending by the lower, then by the upper */
+  uint32_t (*faces)[2]; /* of the boundary, two of those at the edge; the same twice where there is but one */
+  float *turn;          /* degrees between the normals of the two faces; NAN: there are not two, or one has no area */
+  double mean;          /* length */
+  laves__vec3 *point;   /* [vertex_count] relative to `origin`; only those of edges are set */
   size_t vertex_count;
   laves__bvh tree;     /* over the edges whose ends are finite, as triangles of two equal corners */
   uint32_t *slot_edge; /* [tree.count] */

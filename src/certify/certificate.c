@@ -24,6 +24,8 @@ static const uint32_t certify_cookie = 0x63657274;
 #define OFF_SURFACE_SHARE 1e-3
 /* Share of the mean edge from which on places count as distant: below it lies what flat triangles on a curved surface make. */
 #define DISTANT_SHARE 0.3
+/* One tet in so many must be an exact tile for the tiles to tell the size. */
+#define TILES_TELLING 8
 
 laves_certify_options laves_certify_options_default(void) {
   const laves_options asked = laves_options_default();
@@ -135,13 +137,19 @@ typedef struct feature_part {
   laves__feature_findings findings;
 } feature_part;
 
-static laves_feature_options asked_features(const laves_certify_options *options) {
+/* The size that a mesh was made with, where its tiles tell; 0: they do not. What is found of a surface depends on it a little. */
+static double size_by_tiles(const laves_certificate *c) {
+  return c->lattice_tets >= c->check.tets / TILES_TELLING ? c->lattice_size : 0;
+}
+
+static laves_feature_options asked_features(const laves_certify_options *options, const laves_certificate *c) {
   laves_feature_options asked = laves_feature_options_default();
   const laves_options *making = options->options;
   asked.angle = making ? making->feature_angle : options->feature_angle;
   asked.tags = making ? making->feature_tags : options->feature_tags;
   asked.features = making ? making->features : NULL;
   asked.size = making && options->report ? options->report->feature_size : options->feature_size;
+  if (!(asked.size > 0)) asked.size = size_by_tiles(c);
   return asked;
 }
 
@@ -149,7 +157,7 @@ static laves_feature_options asked_features(const laves_certify_options *options
 static laves_result measure_features(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
                                      const laves_certify_options *options, laves_certificate *c, feature_part *part,
                                      laves_error *error) {
-  const laves_feature_options asked = asked_features(options);
+  const laves_feature_options asked = asked_features(options, c);
   if (!options->domain || !options->distances || boundary->count == 0) return LAVES_OK;
   if (!(asked.angle > 0) && !asked.tags && !asked.features) return LAVES_OK;
   laves_result result = laves__check_feature_options(&asked, error);

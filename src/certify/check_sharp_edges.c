@@ -1,7 +1,8 @@
 /* From the mesh to the domain: sharp edges of the boundary where the domain has no crease, and faces that lie across one.
  *
- * A boundary edge is sharp when the normal turns by more than the feature angle. Where the domain is strongly bent at the
- * scale of the edge and no crease is near by, that is the bend's doing: such edges are only counted.
+ * A boundary edge is sharp when the normal turns by more than the feature angle. Where the domain's own normal turns by much
+ * below the two faces, and these stand on one patch, that is the doing of its bend, which no crease is: such edges are only
+ * counted.
  *
  * Faces are looked at by three points, a tenth of the way from each corner to the centroid. Only a face that a crease comes near
  * can lie across it, so most are left alone. Every edge and face has its own slot, which one thread writes. */
@@ -9,8 +10,9 @@
 
 #include "certify/check_features.h"
 
-/* Radius of curvature in edges below which the domain is bent. */
-static const double bent_radius = 2;
+/* Of the feature angle: by how much the domain's normal must turn for its bend to be the cause. */
+static const double bent_share = 0.5;
+static const double degrees = 57.29577951308232;
 /* How far from the corners a face is looked at, of the way to its centroid. */
 static const double inset = 0.1;
 /* Within how many radii of a face, round its centroid, a crease must come. */
@@ -36,10 +38,30 @@ static double crease_distance(const laves__features *features, laves__vec3 p, do
   return laves__crease_near(features, p, reach, &foot, &tangent) == LAVES__NO_FEATURE ? INFINITY : v3_distance(p, foot);
 }
 
-static bool is_bent(const laves__feature_findings *f, laves__vec3 middle, double length) {
-  if (crease_distance(f->features, middle, length) <= length) return false;
-  const laves_domain view = {.oracle = *f->oracle}; /* only its oracle is asked */
-  return laves__curvature_radius(&view, v3_add(middle, f->oracle->origin), length) < bent_radius * length;
+/* Parts of one patch that only the end of a crease has split go together. */
+static bool are_apart(const laves__features *features, int32_t a, int32_t b) {
+  return a != LAVES__NO_FEATURE && b != LAVES__NO_FEATURE && !laves__patches_join(features, a, b);
+}
+
+/* The domain's normal and patch below a face of the boundary; false: there is none. */
+static bool look_below(const laves__feature_findings *f, uint32_t face, laves__vec3 *normal, int32_t *patch) {
+  const int32_t *v = f->boundary->faces[face];
+  const laves__vec3 *p = f->edges.point;
+  const laves__vec3 centroid = v3_scale(v3_add(p[v[0]], v3_add(p[v[1]], p[v[2]])), 1.0 / 3);
+  uint32_t hint = LAVES__NO_HINT;
+  laves__vec3 foot;
+  if (!v3_finite(centroid) || !f->oracle->project(f->oracle->self, centroid, f->check->diagonal, &hint, &foot, normal))
+    return false;
+  *patch = f->features->patch_at ? f->features->patch_at(f->features->self, foot, hint) : LAVES__NO_FEATURE;
+  return true;
+}
+
+static bool is_bent(const laves__feature_findings *f, uint32_t edge) {
+  laves__vec3 n, m;
+  int32_t a, b;
+  if (!look_below(f, f->edges.faces[edge][0], &n, &a) || !look_below(f, f->edges.faces[edge][1], &m, &b)) return false;
+  if (are_apart(f->features, a, b)) return false;
+  return laves__angle(v3_norm(v3_cross(n, m)), v3_dot(n, m)) * degrees > bent_share * f->check->angle;
 }
 
 static void measure_edges(void *user, size_t begin, size_t end, int worker) {
@@ -58,7 +80,7 @@ static void measure_edges(void *user, size_t begin, size_t end, int worker) {
       s->distance = distance;
       s->place = at[k];
     }
-    s->bent = s->distance > f->check->tolerance && is_bent(f, middle, v3_distance(a, b));
+    s->bent = s->distance > f->check->tolerance && is_bent(f, s->edge);
   }
 }
 
@@ -129,17 +151,16 @@ static bool lies_across(const laves__feature_findings *f, const int32_t face[3])
   laves__vec3 corner[3];
   double radius = 0;
   uint32_t hint = LAVES__NO_HINT;
-  int32_t seen = LAVES__NO_FEATURE;
+  int32_t patch[3];
   for (int k = 0; k < 3; k++) corner[k] = f->edges.point[face[k]];
   if (!v3_finite(corner[0]) || !v3_finite(corner[1]) || !v3_finite(corner[2])) return false;
   const laves__vec3 centroid = v3_scale(v3_add(corner[0], v3_add(corner[1], corner[2])), 1.0 / 3);
   for (int k = 0; k < 3; k++) radius = fmax(radius, v3_distance(corner[k], centroid));
   if (crease_distance(f->features, centroid, crease_reach * radius) > crease_reach * radius) return false;
   for (int k = 0; k < 3; k++) {
-    const int32_t patch = patch_below(f, v3_lerp(corner[k], centroid, inset), &hint);
-    if (patch == LAVES__NO_FEATURE || patch == seen) continue;
-    if (seen != LAVES__NO_FEATURE && !laves__patches_join(f->features, patch, seen)) return true;
-    seen = patch;
+    patch[k] = patch_below(f, v3_lerp(corner[k], centroid, inset), &hint);
+    for (int i = 0; i < k; i++)
+      if (are_apart(f->features, patch[i], patch[k])) return true;
   }
   return false;
 }
