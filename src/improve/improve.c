@@ -16,6 +16,7 @@
 #include "improve/peel.h"
 #include "improve/relax.h"
 #include "improve/smooth.h"
+#include "improve/split.h"
 
 enum {
   SWEEPS = 2,
@@ -56,6 +57,8 @@ laves__measure laves__measure_of(const laves__window *w) {
 /* Where sizes vary, and where features are kept, the connectivity is not what it is in C15, and flips pay; they need some dead
  * tets. */
 static const size_t spare_share = 8, spare_min = 1024;
+/* Where features are kept, splits need some dead vertices. */
+static const size_t spare_vertex_share = 64, spare_vertex_min = 256;
 
 /* A bad tet and the block of space in which it is worked on; blocks of a level are 2^level times as large. */
 typedef struct patient {
@@ -78,6 +81,8 @@ typedef struct work {
   size_t first_count;
   int32_t *spare; /* [spare_count] dead tets that flips may use, shared out among the blocks; NULL: no flips */
   size_t spare_count;
+  int32_t *spare_vertex; /* [spare_vertex_count] dead vertices that splits may use, shared out likewise; NULL: no splits */
+  size_t spare_vertex_count, first_spare_vertex;
   uint8_t *tries;   /* [tet_count] full treatments so far, at most TRIES_MAX */
   double *stuck;    /* [tet_count] surroundings in which smoothing ended */
   double *given_up; /* [tet_count] surroundings in which the last full treatment failed */
@@ -184,7 +189,7 @@ static void flip(work *w, int32_t t, laves__slots *slots, laves__journal *journa
 
 /* Inner corners first: they are free to move and need no projection; most tets need no more.
  * A tet that withstood a treatment does not get it again until something around it changes. */
-static void mend(work *w, int32_t t, laves__slots *slots, laves__journal *journal) {
+static void mend(work *w, int32_t t, laves__slots *slots, laves__spare *vertices, laves__journal *journal) {
   const double before = surroundings(w->layer, t);
   if (before == w->given_up[t]) return;
   if (before != w->stuck[t]) {
@@ -196,8 +201,11 @@ static void mend(work *w, int32_t t, laves__slots *slots, laves__journal *journa
   }
   if (w->rounds == 0 || !is_bad(w, t) || w->tries[t] == TRIES_MAX) return;
   w->tries[t]++;
-  if (!laves__contract_tet(w->frame, &w->measure, w->target, w->layer, t, w->rounds, journal))
-    w->given_up[t] = surroundings(w->layer, t);
+  if (laves__contract_tet(w->frame, &w->measure, w->target, w->layer, t, w->rounds, journal)) return;
+  if (w->rounds > 1 && vertices->count > 0 &&
+      laves__split_tet(w->frame, &w->measure, w->target, w->layer, t, slots, vertices, journal))
+    return;
+  w->given_up[t] = surroundings(w->layer, t);
 }
 
 /* Dead tets are shared out by the bad tets of each block. */
@@ -206,11 +214,20 @@ static laves__slots slots_of(const work *w, size_t block) {
   return (laves__slots){.tet = w->spare ? w->spare + first : NULL, .count = (int32_t)(end - first)};
 }
 
-/* Lists the dead tets anew. */
+static laves__spare vertices_of(const work *w, size_t block) {
+  const size_t all = w->spare_vertex_count;
+  const size_t first = all * w->block[block] / w->count, end = all * w->block[block + 1] / w->count;
+  return (laves__spare){.vertex = w->spare_vertex ? w->spare_vertex + first : NULL, .count = (int32_t)(end - first)};
+}
+
+/* Lists the dead tets and vertices anew. */
 static void collect_spare(work *w) {
   w->spare_count = 0;
   for (size_t t = 0; w->spare && t < w->layer->tet_count; t++)
     if (w->layer->tet[t][0] < 0) w->spare[w->spare_count++] = (int32_t)t;
+  w->spare_vertex_count = 0;
+  for (size_t v = w->first_spare_vertex; w->spare_vertex && v < w->layer->vertex_count; v++)
+    if (w->layer->star[v].count == 0) w->spare_vertex[w->spare_vertex_count++] = (int32_t)v;
 }
 
 typedef struct colour_range {
@@ -224,10 +241,11 @@ static void mend_blocks(void *user, size_t begin, size_t end, int worker) {
   work *w = range->w;
   for (size_t b = range->first_block + begin; b < range->first_block + end; b++) {
     laves__slots slots = slots_of(w, b);
+    laves__spare vertices = vertices_of(w, b);
     for (size_t i = w->block[b]; i < w->block[b + 1]; i++) {
       if (laves__is_cancelled(w->layer->context)) return;
       if (worker == 0 && laves__cancelled(w->layer->context, "improve", w->progress)) return;
-      if (is_bad(w, w->item[i].tet)) mend(w, w->item[i].tet, &slots, &w->journal[worker]);
+      if (is_bad(w, w->item[i].tet)) mend(w, w->item[i].tet, &slots, &vertices, &w->journal[worker]);
     }
   }
 }
@@ -393,12 +411,16 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   laves_result result = LAVES_OK;
   const bool flips = layer->scale || layer->hold;
   if (flips && !laves__layer_extend(layer, layer->tet_count / spare_share + spare_min)) return laves__fail_memory(context, error);
+  const size_t extra = layer->hold ? layer->vertex_count / spare_vertex_share + spare_vertex_min : 0;
+  w.first_spare_vertex = layer->vertex_count;
+  if (extra && !laves__layer_extend_vertices(layer, extra)) return laves__fail_memory(context, error);
+  if (extra) w.spare_vertex = laves__alloc(context, extra, sizeof *w.spare_vertex);
   if (flips) w.spare = laves__alloc(context, layer->tet_count, sizeof *w.spare);
   w.journal = laves__alloc_zeroed(context, (size_t)workers, sizeof *w.journal);
   w.given_up = laves__alloc(context, layer->tet_count, sizeof *w.given_up);
   w.stuck = laves__alloc(context, layer->tet_count, sizeof *w.stuck);
   w.tries = laves__alloc_zeroed(context, layer->tet_count, 1);
-  if (!w.journal || !w.given_up || !w.stuck || !w.tries || (flips && !w.spare)) {
+  if (!w.journal || !w.given_up || !w.stuck || !w.tries || (flips && !w.spare) || (extra && !w.spare_vertex)) {
     result = laves__fail_memory(context, error);
     goto cleanup;
   }
@@ -410,6 +432,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   if (result == LAVES_OK) settle_all(&w, settle_floor);
 cleanup:
   for (int i = 0; w.journal && i < workers; i++) laves__journal_free(&w.journal[i]);
+  laves__free(context, w.spare_vertex, extra, sizeof *w.spare_vertex);
   laves__free(context, w.spare, layer->tet_count, sizeof *w.spare);
   laves__free(context, w.tries, layer->tet_count, 1);
   laves__free(context, w.stuck, layer->tet_count, sizeof *w.stuck);

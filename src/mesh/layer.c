@@ -79,6 +79,48 @@ bool laves__layer_extend(laves__layer *layer, size_t extra) {
   return true;
 }
 
+/* A longer array in the place of one with `old` items; false when memory is short. NULL stays NULL. */
+static bool lengthen(laves_context *context, void *array, size_t old, size_t extra, size_t size) {
+  void **block = array;
+  if (!*block) return true;
+  void *longer = laves__realloc(context, *block, old, old + extra, size);
+  if (!longer) return false;
+  *block = longer;
+  return true;
+}
+
+/* Each array grows by itself: when one can't, those before it are shortened again, which never fails to leave a block in place.
+ */
+bool laves__layer_extend_vertices(laves__layer *l, size_t extra) {
+  const size_t old = l->vertex_count;
+  struct {
+    void *array;
+    size_t size;
+  } const all[] = {
+      {&l->position, sizeof *l->position}, {&l->normal, sizeof *l->normal}, {&l->hint, sizeof *l->hint},
+      {&l->depth, sizeof *l->depth},       {&l->hold, sizeof *l->hold},     {&l->off_surface, sizeof *l->off_surface},
+      {&l->scale, sizeof *l->scale},       {&l->origin, sizeof *l->origin}, {&l->star, sizeof *l->star}};
+  size_t grown = 0;
+  if (old + extra > INT32_MAX) return false;
+  while (grown < LAVES__COUNT_OF(all) && lengthen(l->context, all[grown].array, old, extra, all[grown].size)) grown++;
+  if (grown < LAVES__COUNT_OF(all)) {
+    for (size_t i = 0; i < grown; i++) lengthen(l->context, all[i].array, old + extra, (size_t)0 - extra, all[i].size);
+    return false;
+  }
+  l->vertex_count = old + extra;
+  for (size_t v = old; v < l->vertex_count; v++) {
+    l->position[v] = l->normal[v] = v3(0, 0, 0);
+    l->hint[v] = UINT32_MAX;
+    l->depth[v] = 1;
+    l->off_surface[v] = false;
+    l->origin[v] = LAVES__NO_ORIGIN;
+    l->star[v] = (laves__star){0};
+    if (l->hold) l->hold[v] = (laves__hold){0, LAVES__HOLD_SURFACE};
+    if (l->scale) l->scale[v] = 1;
+  }
+  return true;
+}
+
 void laves__layer_free(laves__layer *layer) {
   laves_context *context = layer->context;
   if (!context) return;

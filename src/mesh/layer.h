@@ -52,6 +52,8 @@ laves_result laves__layer_create(laves_context *context, size_t vertex_count, si
 laves_result laves__layer_link(laves__layer *layer, laves_error *error);
 /* Adds dead tets, for operations that need more than they free; false when memory is short. */
 bool laves__layer_extend(laves__layer *layer, size_t extra);
+/* Adds dead vertices, without a site; false when memory is short. */
+bool laves__layer_extend_vertices(laves__layer *layer, size_t extra);
 void laves__layer_free(laves__layer *layer);
 
 /* What holds a vertex of depth 0. */
