@@ -26,6 +26,7 @@ FOLDERS = {
     "graded": "The same of varying size: an octree, both lattices, and what joins them",
     "classify": "Which bricks and sites lie inside",
     "snap": "The cover of the crossing edges, moved on to the surface",
+    "features": "Corners and creases of the solid become vertices and chains of edges",
     "stuff": "The same by warping and cutting, with a proved window",
     "assemble": "From labelled bricks to arrays",
     "improve": "Better angles in the boundary layer",
