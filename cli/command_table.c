@@ -146,6 +146,8 @@ const option option_rows[] = {
      "white, transparent or dark"},
     {"lines", 0, VIEW, IN_PICTURE, OPTION_REAL, "W", "pixels", false, 0, 20, "0.9", MEMBER(lines), 0,
      "width of the edges; 0: none"},
+    {"creases", 0, VIEW, IN_PICTURE, OPTION_REAL, "W", "pixels", false, 0, 20, "0", MEMBER(creases), 0,
+     "width of bold lines along the edges of the boundary where it turns by more than 40 degrees; 0: none"},
 
     {"output", 'o', MESH, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, OUTPUT_CAPACITY, "INPUT's base name and .vtu, here",
      MEMBER(outputs), 0, "where the mesh goes; repeat it for several formats"},

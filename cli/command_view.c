@@ -21,6 +21,9 @@ static int word_index(const char *word, const char *const *words, int count) {
   return -1;
 }
 
+/* Degrees, as features are looked for by default. */
+static const double crease_angle = 40;
+
 static laves_result read_words(session *run, scene_options *what, picture_options *how) {
   static const char *const axes[] = {"x", "y", "z"};
   static const char *const colours[] = {"class", "dihedral", "quality", "size"};
@@ -41,6 +44,8 @@ static laves_result read_words(session *run, scene_options *what, picture_option
   how->up = up;
   how->background = (picture_background)background;
   how->line_width = given->lines;
+  how->crease_width = given->creases;
+  what->crease_angle = given->creases > 0 ? crease_angle : 0;
   return LAVES_OK;
 }
 

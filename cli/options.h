@@ -54,7 +54,7 @@ typedef struct settings {
   option_texts size_fields, refinements;
   const char *cut; /* NULL: not given */
   const char *color, *view, *up, *pixels, *background;
-  double lines; /* pixels */
+  double lines, creases; /* pixels */
 } settings;
 
 typedef enum option_kind {

@@ -118,6 +118,9 @@ static double shade(const camera *c, const double normal[3]) {
          (sky_strength - ground_strength) * sky;
 }
 
+/* Of bold lines, linear light: a dark red. */
+static const float crease_colour[3] = {0.42f, 0.02f, 0.015f};
+
 /* Screen triangles; shading and lines are settled here. */
 static raster_triangle *make_triangles(const scene *subject, const camera *c, const picture_options *options) {
   raster_triangle *triangles = malloc((subject->face_count + 1) * sizeof *triangles);
@@ -134,6 +137,11 @@ static raster_triangle *make_triangles(const scene *subject, const camera *c, co
       t->edge_colour[k] = 0.22f * t->colour[k];
     }
     t->edge_width = (float)options->line_width;
+    t->bold = face->creases;
+    t->bold_width = (float)options->crease_width;
+    for (int k = 0; k < 3; k++) {
+      t->bold_colour[k] = crease_colour[k];
+    }
   }
   return triangles;
 }

@@ -7,11 +7,12 @@
 typedef enum picture_background { PICTURE_WHITE, PICTURE_TRANSPARENT, PICTURE_DARK } picture_background;
 
 typedef struct picture_options {
-  int width, height;  ///< pixels
-  double azimuth;     ///< degrees, where the viewer stands, counterclockwise around the upward axis
-  double elevation;   ///< degrees above the horizon
-  int up;             ///< upward axis: 0 x, 1 y, 2 z; azimuth 0 is the axis after it (x for z, z for y)
-  double line_width;  ///< of the edges, pixels; 0: none
+  int width, height;    ///< pixels
+  double azimuth;       ///< degrees, where the viewer stands, counterclockwise around the upward axis
+  double elevation;     ///< degrees above the horizon
+  int up;               ///< upward axis: 0 x, 1 y, 2 z; azimuth 0 is the axis after it (x for z, z for y)
+  double line_width;    ///< of the edges, pixels; 0: none
+  double crease_width;  ///< of those marked in the scene, pixels
   picture_background background;
 } picture_options;
 

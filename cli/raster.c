@@ -4,7 +4,7 @@
  * The picture is drawn in bands of rows so that the samples of one band, not of all, are in memory. Each pixel has a
  * grid of samples, and each sample keeps the nearest triangle's colour. A line along an edge is not drawn by itself but as
  * a darker seam within both triangles that share it, by the distance of the sample from the edge's line in pixels: so
- * lines can never fight with faces over depth. */
+ * lines can never fight with faces over depth. Bold lines, for creases, are drawn the same way and never fade. */
 #include "raster.h"
 
 #include <math.h>
@@ -69,6 +69,15 @@ static double line_strength(const raster_triangle *t, const slope edges[3]) {
   return fmax(0, fmin(1, altitude / (5 * t->edge_width) - 0.15));
 }
 
+/* How much of a sample a bold line covers, 0..1; `inside`: its distances from the edges. */
+static double bold_cover(const raster_triangle *t, const double inside[3]) {
+  double cover = 0;
+  for (int i = 0; i < 3; i++) {
+    if (t->bold >> i & 1) cover = fmax(cover, fmin(1, 0.5 + (0.5 * t->bold_width - inside[i]) * samples));
+  }
+  return cover;
+}
+
 static int clamp_int(double value, int low, int high) { return value < low ? low : value > high ? high : (int)value; }
 
 /* Draws one triangle into the band of sample rows [first_row, first_row + row_count). */
@@ -97,8 +106,10 @@ static void draw_triangle(const raster_triangle *t, int32_t index, raster_sample
       }
       // Half of the line lies on this side of the edge; it fades over the size of a sample.
       double line = strength * fmax(0, fmin(1, 0.5 + (0.5 * t->edge_width - inside) * samples));
+      double bold = t->bold ? bold_cover(t, (const double[3]){e0, e1, e2}) : 0;
       for (int i = 0; i < 3; i++) {
-        sample->colour[i] = (float)(t->colour[i] + line * (t->edge_colour[i] - t->colour[i]));
+        double plain = t->colour[i] + line * (t->edge_colour[i] - t->colour[i]);
+        sample->colour[i] = (float)(plain + bold * (t->bold_colour[i] - plain));
       }
       sample->nearness = near;
       sample->triangle = index;

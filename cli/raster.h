@@ -13,6 +13,9 @@ typedef struct raster_triangle {
   float colour[3];       ///< linear light
   float edge_colour[3];  ///< linear light
   float edge_width;      ///< pixels
+  uint8_t bold;          ///< bit i: the edge opposite corner i has a bold line
+  float bold_colour[3];  ///< linear light
+  float bold_width;      ///< pixels
 } raster_triangle;
 
 /// What covers one pixel, averaged over its samples, with the nearest of the triangles that cover it.

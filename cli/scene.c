@@ -283,7 +283,10 @@ static void fill_face(const laves_mesh *mesh, const face_entry *entry, scene_col
   tet_corners(mesh, tet, p);
   for (int k = 0; k < 3; k++) {
     memcpy(out->points[k], p[tet_face[corner][k]], sizeof p[k]);
+    out->vertex[k] = laves_mesh_tets(mesh)[4 * tet + tet_face[corner][k]];
   }
+  out->boundary = entry->all == 1;
+  out->creases = 0;
   subtract(out->points[1], out->points[0], u);
   subtract(out->points[2], out->points[0], v);
   subtract(p[corner], out->points[0], inwards);
@@ -300,6 +303,57 @@ static void fill_face(const laves_mesh *mesh, const face_entry *entry, scene_col
   } else {
     score_colour(colour == SCENE_DIHEDRAL ? dihedral_score(p) : volume_length(p), out->colour);
   }
+}
+
+/* ---- creases ---- */
+
+/* An edge by its sorted ends, and where it was met first: 3 * face + the corner that it is opposite to. */
+typedef struct edge_entry {
+  int32_t low, high;
+  int64_t first; /* plus one; 0: free */
+} edge_entry;
+
+static edge_entry *edge_find(edge_entry *table, size_t mask, int32_t low, int32_t high) {
+  uint64_t hash = ((uint32_t)low * UINT64_C(0x9e3779b97f4a7c15) ^ (uint32_t)high) * UINT64_C(0xbf58476d1ce4e5b9);
+  size_t slot = (size_t)(hash >> 20) & mask;
+  while (table[slot].first && (table[slot].low != low || table[slot].high != high)) {
+    slot = (slot + 1) & mask;
+  }
+  return &table[slot];
+}
+
+static void mark_edge(scene *out, edge_entry *table, size_t mask, int64_t half, double cosine) {
+  scene_face *face = &out->faces[half / 3];
+  int32_t a = face->vertex[(half % 3 + 1) % 3], b = face->vertex[(half % 3 + 2) % 3];
+  edge_entry *edge = edge_find(table, mask, a < b ? a : b, a < b ? b : a);
+  if (!edge->first) {
+    *edge = (edge_entry){a < b ? a : b, a < b ? b : a, half + 1};
+    return;
+  }
+  scene_face *other = &out->faces[(edge->first - 1) / 3];
+  if (dot(face->normal, other->normal) < cosine) {
+    face->creases |= (uint8_t)(1 << half % 3);
+    other->creases |= (uint8_t)(1 << (edge->first - 1) % 3);
+  }
+}
+
+/* Edges between two faces of the boundary that are turned against one another. Returns false when memory is short. */
+static bool mark_creases(scene *out, double angle) {
+  size_t size = 1024;
+  while (size < 4 * out->face_count) {
+    size *= 2;
+  }
+  edge_entry *table = calloc(size, sizeof *table);
+  if (!table) {
+    return false;
+  }
+  for (size_t i = 0; i < 3 * out->face_count; i++) {
+    if (out->faces[i / 3].boundary) {
+      mark_edge(out, table, size - 1, (int64_t)i, cos(angle * 3.14159265358979323846 / 180));
+    }
+  }
+  free(table);
+  return true;
 }
 
 bool scene_build(const laves_mesh *mesh, const scene_options *options, scene *out) {
@@ -322,7 +376,7 @@ bool scene_build(const laves_mesh *mesh, const scene_options *options, scene *ou
       fill_face(mesh, &table.entries[i], options->colour, out->sizes, &out->faces[out->face_count++]);
     }
   }
-  done = true;
+  done = !(options->crease_angle > 0) || mark_creases(out, options->crease_angle);
 done:
   free(marks);
   free(table.entries);

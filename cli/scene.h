@@ -10,13 +10,17 @@ typedef struct scene_options {
   bool cut;
   double plane[4];  ///< with `cut`: tetrahedra with every corner at a x + b y + c z <= d are kept
   scene_colour colour;
+  double crease_angle;  ///< degrees: edges of the boundary where its normal turns by more are creases; 0: none are looked for
 } scene_options;
 
 /// One triangle, seen from the side that `normal` points to.
 typedef struct scene_face {
   double points[3][3];
-  double normal[3];  ///< unit length, out of the solid
-  float colour[3];   ///< linear light, 0..1
+  double normal[3];   ///< unit length, out of the solid
+  float colour[3];    ///< linear light, 0..1
+  int32_t vertex[3];  ///< of the mesh
+  bool boundary;      ///< of the mesh, not of the cut
+  uint8_t creases;    ///< bit i: the edge opposite corner i is a crease
 } scene_face;
 
 typedef struct scene {

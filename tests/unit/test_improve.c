@@ -248,15 +248,15 @@ static void quality_is_one_on_the_border(void **state) {
   for (int angle = 20; angle <= 60; angle += 5) {
     const double a = angle * M_PI / 180;
     const laves__vec3 p[4] = {v3(0, 0, -0.6), v3(0, 0, 0.6), v3(1, 0, 0), v3(cos(a), sin(a), 0)};
-    const double q = laves__quality(&m, p, 1);
+    const double q = laves__quality(&m, p, 1, 0);
     assert_true(q > before);
     if (angle == 40) assert_true(fabs(q - 1) < 1e-9);
     before = q;
   }
   const laves__vec3 flat[4] = {v3(0, 0, 0), v3(1, 0, 0), v3(0, 1, 0), v3(1, 1, 0)};
-  assert_true(laves__quality(&m, flat, 1) <= 0);
+  assert_true(laves__quality(&m, flat, 1, 0) <= 0);
   const laves__vec3 inverted[4] = {v3(0, 0, 0), v3(0, 1, 0), v3(1, 0, 0), v3(0, 0, 1)};
-  assert_true(laves__quality(&m, inverted, 1) < 0);
+  assert_true(laves__quality(&m, inverted, 1, 0) < 0);
 }
 
 int main(void) {
