@@ -65,7 +65,7 @@ static const struct {
   int length2[6];
   laves__tile tile;
   double min_dihedral, max_dihedral, volume_length;
-} shape[SHAPES] = {
+} table[SHAPES] = {
     {{2, 2, 2, 2, 2, 2}, LAVES__TILE_C15, 70.528, 70.529, 1.0},
     {{8, 8, 8, 11, 11, 11}, LAVES__TILE_C15, 67.114, 74.207, 0.966},
     {{8, 11, 11, 11, 11, 12}, LAVES__TILE_C15, 60, 73.222, 0.974},
@@ -93,7 +93,7 @@ static int shape_of(const laves__vec3 p[4]) {
   for (int row = 0; row < SHAPES; row++) {
     bool same = true;
     for (int e = 1; e < 6; e++)
-      same &= fabs(length2[e] / length2[0] - (double)shape[row].length2[e] / shape[row].length2[0]) < 1e-9;
+      same &= fabs(length2[e] / length2[0] - (double)table[row].length2[e] / table[row].length2[0]) < 1e-9;
     if (same) return row;
   }
   return -1;
@@ -120,7 +120,7 @@ static void every_tet_has_one_of_twelve_shapes(void **state) {
       for (int k = 0; k < 4; k++) p[k] = g.position[g.tet[t][k]];
       const int row = shape_of(p);
       if (row < 0) fail_msg("seed %d: tet %zu has none of the shapes", (int)seed, t);
-      if (g.tile[t] != shape[row].tile) {
+      if (g.tile[t] != table[row].tile) {
         /* Halves of the stars of sites that stay look like tiles, but are not told apart: only tiles may be called so. */
         assert_int_equal(g.tile[t], LAVES__TILE_OTHER);
       }
@@ -160,8 +160,8 @@ static void the_table_of_shapes_is_right(void **state) {
   }
   for (int row = 0; row < SHAPES; row++) {
     if (most[row] == 0) continue;
-    assert_true(fabs(least[row] - shape[row].min_dihedral) < 2e-3);
-    assert_true(fabs(most[row] - shape[row].max_dihedral) < 2e-3);
+    assert_true(fabs(least[row] - table[row].min_dihedral) < 2e-3);
+    assert_true(fabs(most[row] - table[row].max_dihedral) < 2e-3);
     assert_true(least[row] > 45 - 1e-9 && most[row] < 120 + 1e-9);
   }
   laves__graph_free(&g);
