@@ -40,6 +40,8 @@ static laves_options make_options(const settings *given, const laves_sizing *siz
   options.method = given->method;
   options.guarantee = given->guarantee;
   options.improve = !given->no_improve;
+  options.regions = given->regions;
+  options.face_sources = given->face_sources;
   if (given->window.given) {
     options.min_dihedral = given->window.values[0];
     options.max_dihedral = given->window.values[1];

@@ -83,6 +83,7 @@ static laves_result choose_frame(run *r) {
   r->frame.oracle = oracle;
   r->frame.centre = box3_centre(oracle->bounds);
   r->frame.rotation = laves__options_rotation(r->options, oracle);
+  r->frame.face_sources = r->options->face_sources;
   r->frame.size = laves__options_size(r->options, oracle, r->report->volume);
   end_stage(r, "background");
   if (r->frame.size > 0 && isfinite(r->frame.size)) return LAVES_OK;

@@ -1,4 +1,4 @@
-/* Which of the layer's vertices live, their numbers, and the boundary with its tags. */
+/* Which of the layer's vertices live, their numbers, and the boundary with its tags and sources. */
 #include "assemble/layer_part.h"
 
 #include <string.h>
@@ -94,7 +94,10 @@ laves_result laves__layer_part_mesh(laves__layer_part *part, int64_t vertices, s
   const int64_t total = number_layer(part, vertices);
   *mesh = laves__mesh_create(context, (size_t)total, stamped + part->tet_count, part->face_count, false,
                              part->frame->oracle->tag != NULL);
-  return *mesh ? LAVES_OK : laves__fail_memory(context, error);
+  if (!*mesh) return laves__fail_memory(context, error);
+  if (!part->frame->face_sources || !part->frame->oracle->source) return LAVES_OK;
+  (*mesh)->face_sources = laves__alloc(context, part->face_count, sizeof *(*mesh)->face_sources);
+  return (*mesh)->face_sources ? LAVES_OK : laves__fail_memory(context, error);
 }
 
 static void write_tets(const laves__layer_part *part, size_t next, laves_mesh *mesh) {
@@ -131,25 +134,35 @@ typedef struct tagging {
   int32_t *owner; /* [face_count] a layer vertex of each face, for the hint */
 } tagging;
 
-/* The tag of the surface nearest to the centroid of each boundary face. */
-static void tag_faces(void *user, size_t begin, size_t end, int worker) {
-  (void)worker;
-  const tagging *g = user;
+/* The foot of a boundary face: the point of the surface nearest to its centroid. All that a face knows of the surface is
+ * what is there. */
+static bool find_foot(const tagging *g, size_t f, laves__vec3 *foot, uint32_t *hint) {
   const laves__frame *frame = g->part->frame;
   const laves__layer *layer = g->part->layer;
   const laves__oracle *oracle = frame->oracle;
+  const int32_t *face = g->mesh->faces[f];
+  const laves__vec3 sum = v3_add(v3_add(g->mesh->points[face[0]], g->mesh->points[face[1]]), g->mesh->points[face[2]]);
+  const double reach = 2 * frame->size * laves__layer_scale(layer, g->owner[f]);
+  laves__vec3 normal;
+  *hint = layer->hint[g->owner[f]];
+  return oracle->project(oracle->self, v3_sub(v3_scale(sum, 1.0 / 3), oracle->origin), reach, hint, foot, &normal);
+}
+
+/* Tag and source of each boundary face. */
+static void tag_faces(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const tagging *g = user;
+  const laves__oracle *oracle = g->part->frame->oracle;
   for (size_t f = begin; f < end; f++) {
-    const int32_t *face = g->mesh->faces[f];
-    const laves__vec3 sum = v3_add(v3_add(g->mesh->points[face[0]], g->mesh->points[face[1]]), g->mesh->points[face[2]]);
-    const double reach = 2 * frame->size * laves__layer_scale(layer, g->owner[f]);
-    uint32_t hint = layer->hint[g->owner[f]];
-    laves__vec3 foot, normal;
-    g->mesh->face_tags[f] = 1;
-    if (oracle->project(oracle->self, v3_sub(v3_scale(sum, 1.0 / 3), oracle->origin), reach, &hint, &foot, &normal))
-      g->mesh->face_tags[f] = 1 + oracle->tag(oracle->self, foot, hint);
+    uint32_t hint;
+    laves__vec3 foot;
+    const bool found = find_foot(g, f, &foot, &hint);
+    if (g->mesh->face_tags) g->mesh->face_tags[f] = found ? 1 + oracle->tag(oracle->self, foot, hint) : 1;
+    if (g->mesh->face_sources) g->mesh->face_sources[f] = found ? oracle->source(oracle->self, foot, hint) : -1;
   }
 }
 
+/* Tags, and sources where they were asked for. */
 static laves_result write_tags(const laves__layer_part *part, laves_mesh *mesh, laves_error *error) {
   laves_context *context = part->lattice->context;
   tagging g = {part, mesh, laves__alloc(context, mesh->face_count, sizeof *g.owner)};
@@ -167,7 +180,7 @@ laves_result laves__layer_part_write(const laves__layer_part *part, size_t first
   write_tets(part, first_tet, mesh);
   write_copies(part, mesh);
   write_faces(part, mesh);
-  return mesh->face_tags ? write_tags(part, mesh, error) : LAVES_OK;
+  return mesh->face_tags || mesh->face_sources ? write_tags(part, mesh, error) : LAVES_OK;
 }
 
 void laves__layer_part_free(laves__layer_part *part) {

@@ -51,6 +51,10 @@ typedef struct laves__oracle {
   /* Tag of the surface at a foot given by `project` and its hint; NULL: no tags. */
   int32_t (*tag)(const void *self, laves__vec3 foot, uint32_t hint);
 
+  /* The same for the face of the input file, from 0, that the foot lies on; -1: on none (in a hole that was closed).
+   * NULL: the domain is not made of faces. */
+  int32_t (*source)(const void *self, laves__vec3 foot, uint32_t hint);
+
   /* Deterministic samples of the surface, spaced by about `spacing`, at most `capacity` of them into points; returns
    * how many there are. NULL: not available. */
   size_t (*sample)(const void *self, double spacing, laves__vec3 *points, size_t capacity);

@@ -135,6 +135,7 @@ typedef struct laves__surface {
   size_t point_count, point_capacity;
   uint32_t (*faces)[3]; /* in the order of the tree's slots */
   int32_t *tags;        /* [face_capacity], NULL: none */
+  uint32_t *sources;    /* [face_capacity] the face of the file that each is a part of, from 0 */
   size_t face_count, face_capacity;
   uint32_t *across;           /* [3 face_capacity] half-edge (3 face + corner where it starts) on the other side, or NONE */
   laves__vec3 *face_normals;  /* [face_capacity] of length one; zero for faces without area */
@@ -163,7 +164,7 @@ typedef struct laves__surface {
 
 /* ---- weld ---- */
 
-/* Fills points, faces and tags from input (local coordinates); counts repeated and unused points, degenerate and
+/* Fills points, faces, tags and sources from input (local coordinates); counts repeated and unused points, degenerate and
  * repeated faces. False when memory is short. */
 bool laves__surface_weld(laves__surface *s, const laves__surface_input *input, laves__vec3 origin, laves_domain_info *info);
 

@@ -3,7 +3,7 @@
  * The header lists elements ("vertex", "face", others), each with a count and properties, which are numbers or lists of
  * numbers of eight types; the data follow in that order. All of them are walked through; used are x, y, z of "vertex",
  * the list vertex_indices (or vertex_index) of "face", or of "tristrips" with -1 between strips, and as tags an integer
- * property of "face" with one of the names in is_label(). Elements may stand in any order.
+ * property of "face", as choose_label() tells. Elements may stand in any order.
  *
  * Every value is handled as a double, which holds all eight types exactly. */
 #include <math.h>
@@ -100,14 +100,6 @@ static laves_result read_element(ply_file *file) {
   return LAVES_OK;
 }
 
-static bool is_label(laves__word name) {
-  static const char *const NAMES[] = {"label", "tag", "region", "region_id", "material_index", "group", "segment", "part"};
-  for (size_t i = 0; i < LAVES__COUNT_OF(NAMES); ++i) {
-    if (laves__word_is(name, NAMES[i])) return true;
-  }
-  return false;
-}
-
 static ply_role role_of(const ply_property *property, laves__word element) {
   const laves__word name = property->name;
   if (laves__word_is(element, "vertex") && !property->is_list && name.length == 1 && *name.at >= 'x' && *name.at <= 'z') {
@@ -116,8 +108,7 @@ static ply_role role_of(const ply_property *property, laves__word element) {
   const bool corners = property->is_list && (laves__word_is(name, "vertex_indices") || laves__word_is(name, "vertex_index"));
   if (corners && laves__word_is(element, "face")) return ROLE_CORNERS;
   if (corners && laves__word_is(element, "tristrips")) return ROLE_STRIP;
-  const bool label = laves__word_is(element, "face") && !property->is_list && property->type < FLOAT32 && is_label(name);
-  return label ? ROLE_LABEL : ROLE_NONE;
+  return ROLE_NONE;
 }
 
 static laves_result read_property(ply_file *file) {
@@ -145,6 +136,36 @@ static laves_result read_property(ply_file *file) {
   return LAVES_OK;
 }
 
+/* Whether a property of faces may be a label, going by its type: a colour or a flag is none. */
+static bool can_be_label(const ply_property *property) {
+  static const char *const OTHERS[] = {"red", "green", "blue", "alpha", "r", "g", "b", "a", "flags", "flag", "quality"};
+  for (size_t i = 0; i < LAVES__COUNT_OF(OTHERS); ++i) {
+    if (laves__word_is(property->name, OTHERS[i])) return false;
+  }
+  return !property->is_list && property->type < FLOAT32;
+}
+
+/* The label of faces: the integer property whose name stands first in this list; else the only integer that is neither
+ * colour nor flag. */
+static void choose_label(ply_file *file, ply_element *element) {
+  static const char *const NAMES[] = {"label",          "tag",       "group", "material", "region", "object",
+                                      "material_index", "region_id", "part",  "segment",  "patch",  "group_id"};
+  ply_property *first = file->properties + element->first_property, *label = NULL;
+  for (size_t n = 0; n < LAVES__COUNT_OF(NAMES) && label == NULL; ++n) {
+    for (size_t i = 0; i < element->property_count && label == NULL; ++i) {
+      if (can_be_label(&first[i]) && laves__word_is(first[i].name, NAMES[n])) label = &first[i];
+    }
+  }
+  size_t candidates = 0;
+  for (size_t i = 0; i < element->property_count && label == NULL; ++i) candidates += can_be_label(&first[i]);
+  for (size_t i = 0; i < element->property_count && candidates == 1; ++i) {
+    if (can_be_label(&first[i])) label = &first[i];
+  }
+  if (label == NULL) return;
+  label->role = ROLE_LABEL;
+  element->roles |= 1u << ROLE_LABEL;
+}
+
 /* Goes behind the line "end_header". Where lines end with a lone CR, an LF behind it is data already. */
 static laves_result end_header(ply_file *file) {
   laves__scan *scan = &file->build->scan;
@@ -162,6 +183,9 @@ static laves_result end_header(ply_file *file) {
     return laves__build_fail(file->build, "the header has no line 'format'");
   }
   file->build->binary = file->encoding != ASCII;
+  for (size_t i = 0; i < file->element_count; ++i) {
+    if (laves__word_is(file->elements[i].name, "face")) choose_label(file, &file->elements[i]);
+  }
   return LAVES_OK;
 }
 
