@@ -159,6 +159,20 @@ static void free_implicit(laves_context *context, void *self) {
   laves__free(context, s, 1, sizeof *s);
 }
 
+/* Two parts of the surface that are nearer to one another than this share of the diagonal are in one place: far more than the
+ * rounding of values, far less than what a mesh resolves. */
+static const double tag_tolerance = 1e-9;
+
+static int32_t tag(const void *self, laves__vec3 foot, uint32_t hint) {
+  const implicit *s = self;
+  (void)hint;
+  const double slope = v3_norm(laves__tape_gradient(&s->tape, foot).gradient);
+  const double tolerance = tag_tolerance * s->diagonal * (isfinite(slope) ? slope : 1);
+  const laves__leaf_tags leaf_tags = {s->model.leaf_tag_first, s->model.leaf_tags};
+  const int32_t found = laves__tape_tag(&s->tape, &leaf_tags, foot, tolerance);
+  return found == LAVES__NO_TAG ? 0 : found;
+}
+
 /* ---- samples: where cells of a grid meet the surface ---- */
 
 typedef struct sampler {
@@ -249,6 +263,20 @@ static laves_result copy_leaves(implicit *s, laves_context *context, laves_error
   return LAVES_OK;
 }
 
+/* Hands the names over to the domain. */
+static laves_result fill_names(laves_domain *domain, implicit *s, laves_error *error) {
+  laves__tag_list *names = &s->model.names;
+  if (names->count == 0) return LAVES_OK;
+  char **fitted = laves__realloc(domain->context, names->names, names->capacity, names->count, sizeof *names->names);
+  if (!fitted) return laves__fail_memory(domain->context, error);
+  domain->tag_names = fitted;
+  domain->info.tag_count = (int)names->count;
+  domain->oracle.tag = tag;
+  names->names = NULL;
+  names->count = names->capacity = 0;
+  return LAVES_OK;
+}
+
 static void fill_domain(laves_domain *domain, implicit *s, laves__box3 box, laves__vec3 origin, bool is_expression) {
   const laves__shape *shape = &s->model.shape;
   domain->oracle = (laves__oracle){.self = s,
@@ -294,5 +322,5 @@ laves_result laves__implicit_build(laves_context *context, const char *text, siz
   s->is_distance = s->model.shape.exact;
   laves__expression_free(&s->model.expression);
   fill_domain(domain, s, box, origin, is_expression);
-  return LAVES_OK;
+  return fill_names(domain, s, error); /* the domain owns s now, and frees it */
 }

@@ -24,6 +24,14 @@ typedef struct compiler {
   laves__tape *tape;
 } compiler;
 
+/* Names stand beside the instructions: what is computed is what is named. Names follow one another never. */
+static laves__node plain(const laves__expression *e, laves__node a) {
+  return e->nodes[a].op == LAVES__OP_TAG ? e->nodes[a].operand[0] : a;
+}
+static int32_t tag_of(const laves__expression *e, laves__node a) {
+  return e->nodes[a].op == LAVES__OP_TAG ? (int32_t)e->nodes[a].value : LAVES__NO_TAG;
+}
+
 static bool is_constant(const laves__expression *e, laves__node a) { return e->nodes[a].op == LAVES__OP_CONSTANT; }
 static bool is_input(const laves__expression *e, laves__node a) {
   return e->nodes[a].op >= LAVES__OP_X && e->nodes[a].op <= LAVES__OP_Z;
@@ -37,14 +45,14 @@ static size_t count_uses(compiler *c, laves__node root) {
     if (!c->uses[i]) continue;
     const laves__node_data *n = &c->e->nodes[i];
     const int operands = laves__op_operands[n->op];
-    for (int k = 0; k < operands; k++) c->uses[n->operand[k]]++;
+    for (int k = 0; k < operands; k++) c->uses[plain(c->e, n->operand[k])]++;
     reachable += operands > 0;
   }
   for (size_t i = 0; i <= root; i++) {
     const laves__node_data *n = &c->e->nodes[i];
     uint16_t need = laves__op_operands[n->op] ? 1 : 0;
     for (int k = 0; k < laves__op_operands[n->op]; k++) {
-      const uint16_t other = c->need[n->operand[k]];
+      const uint16_t other = c->need[plain(c->e, n->operand[k])];
       need = (uint16_t)(other > need ? other : need + (other == need && other < UINT16_MAX));
     }
     c->need[i] = need;
@@ -65,7 +73,8 @@ static bool emit(compiler *c, laves__node a) {
   laves__instruction instruction = {.op = (uint16_t)n->op};
   const int operands = laves__op_operands[n->op];
   for (int k = 0; k < operands; k++) {
-    const laves__node b = n->operand[k];
+    const laves__node b = plain(c->e, n->operand[k]);
+    if (c->tape->tags) c->tape->tags[3 * c->tape->count + (size_t)k] = tag_of(c->e, n->operand[k]);
     instruction.operand[k] = is_input(c->e, b) ? (uint16_t)(c->e->nodes[b].op - LAVES__OP_X) : c->reg[b];
     if (is_constant(c->e, b)) {
       instruction.operand[k] = LAVES__OPERAND_CONSTANT;
@@ -73,7 +82,7 @@ static bool emit(compiler *c, laves__node a) {
     }
   }
   if (n->op == LAVES__OP_LEAF) instruction.leaf = (uint16_t)n->value;
-  for (int k = 0; k < operands; k++) release(c, n->operand[k]);
+  for (int k = 0; k < operands; k++) release(c, plain(c->e, n->operand[k]));
   if (c->free_count == 0) {
     if (c->tape->register_count == LAVES__REGISTER_LIMIT) return false;
     c->free[c->free_count++] = (uint16_t)c->tape->register_count++;
@@ -96,7 +105,7 @@ static bool schedule(compiler *c, laves__node root) {
     const laves__node_data *n = &c->e->nodes[a];
     laves__node next = LAVES__NO_NODE;
     for (int k = 0; k < laves__op_operands[n->op]; k++) {
-      const laves__node b = n->operand[k];
+      const laves__node b = plain(c->e, n->operand[k]);
       if (!is_computed(c, b) && (next == LAVES__NO_NODE || c->need[b] > c->need[next])) next = b;
     }
     if (next != LAVES__NO_NODE) {
@@ -123,11 +132,18 @@ static void emit_trivial(compiler *c, laves__node root) {
   tape->count = 2;
 }
 
+static bool any_tag(const laves__expression *e, size_t nodes) {
+  for (size_t i = 0; i < nodes; i++)
+    if (e->nodes[i].op == LAVES__OP_TAG) return true;
+  return false;
+}
+
 laves_result laves__tape_build(const laves__expression *e, laves__node root, const laves__oracle *leaves, laves__tape *tape,
                                laves_error *error) {
   laves_context *context = e->context;
   const size_t nodes = (size_t)root + 1;
-  *tape = (laves__tape){.leaves = leaves, .register_count = 3};
+  *tape = (laves__tape){.leaves = leaves, .register_count = 3, .root_tag = tag_of(e, root)};
+  root = plain(e, root);
   laves_result result = LAVES_OK;
   size_t reachable = 0;
   compiler *c = laves__alloc_zeroed(context, 1, sizeof *c);
@@ -144,7 +160,10 @@ laves_result laves__tape_build(const laves__expression *e, laves__node root, con
   for (size_t i = 0; i < nodes; i++) c->reg[i] = LAVES__OPERAND_CONSTANT;
   reachable = count_uses(c, root);
   tape->instructions = laves__alloc(context, reachable ? reachable : 2, sizeof *tape->instructions);
-  if (!tape->instructions) {
+  if (tape->instructions && reachable && any_tag(e, nodes)) tape->tags = laves__alloc(context, 3 * reachable, sizeof *tape->tags);
+  if (!tape->instructions || (reachable && any_tag(e, nodes) && !tape->tags)) {
+    laves__free(context, tape->instructions, reachable ? reachable : 2, sizeof *tape->instructions);
+    *tape = (laves__tape){.leaves = leaves};
     result = laves__fail_memory(context, error);
     goto done;
   }
@@ -155,6 +174,7 @@ laves_result laves__tape_build(const laves__expression *e, laves__node root, con
                          "the expression needs more than %d intermediate values at once; split the solid into simpler parts",
                          LAVES__REGISTER_LIMIT);
     laves__free(context, tape->instructions, reachable, sizeof *tape->instructions);
+    laves__free(context, tape->tags, 3 * reachable, sizeof *tape->tags);
     *tape = (laves__tape){.leaves = leaves};
   }
 done:
@@ -168,6 +188,7 @@ done:
 
 void laves__tape_free(laves_context *context, laves__tape *tape) {
   laves__free(context, tape->instructions, tape->count, sizeof *tape->instructions);
+  laves__free(context, tape->tags, 3 * tape->count, sizeof *tape->tags);
   *tape = (laves__tape){0};
 }
 
