@@ -299,6 +299,8 @@ static bool solve(laves__surface *s, laves_domain_info *info) {
     if (!renew_topology(s, info)) goto clean_up;
   }
   laves__surface_measure(s, &info->volume, &info->area);
+  if ((s->rim_count > 0 || crossings.count > 0 || info->component_count > 1 || any_doubt(s)) && !laves__surface_find_parts(s))
+    goto clean_up;
   if (s->rim_count > 0) {
     if (!solve_open(s, &crossings, info)) goto clean_up;
   } else if (crossings.count > 0 || info->component_count > 1 || any_doubt(s)) {

@@ -267,6 +267,9 @@ void laves__surface_free(laves_context *context, void *self) {
   laves__free(context, s->faces, s->face_capacity, sizeof *s->faces);
   laves__free(context, s->tags, s->face_capacity, sizeof *s->tags);
   laves__free(context, s->sources, s->face_capacity, sizeof *s->sources);
+  laves__free(context, s->part, s->part_capacity, sizeof *s->part);
+  laves__free(context, s->part_tag, s->part_count, sizeof *s->part_tag);
+  laves__free(context, s->part_closed, s->part_count, sizeof *s->part_closed);
   laves__free(context, s->across, 3 * s->face_capacity, sizeof *s->across);
   laves__winding_free(context, &s->winding);
   laves__free(context, s->rim_lengths, s->rim_tree.node_capacity, sizeof *s->rim_lengths);
