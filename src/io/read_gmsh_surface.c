@@ -58,7 +58,7 @@ static const char *group_name(const laves__mesh_input *mesh, int32_t tag, char *
 static bool has_tags(const laves__mesh_input *mesh) {
   for (size_t i = 1; i < mesh->face_count; i++)
     if (mesh->face_tags[i] != mesh->face_tags[0]) return true;
-  for (size_t i = 0; i < mesh->group_count; i++)
+  for (size_t i = 0; mesh->face_count > 0 && i < mesh->group_count; i++)
     if (mesh->groups[i].dimension == 2 && mesh->groups[i].tag == mesh->face_tags[0]) return true;
   return false;
 }
