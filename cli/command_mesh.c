@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "groups.h"
 #include "input.h"
 #include "output.h"
 #include "session.h"
@@ -205,6 +206,8 @@ static void write_options(json *out, const settings *given, const laves_options 
   json_boolean(out, "improve", options->improve);
   json_numbers(out, "window", (const double[2]){options->min_dihedral, options->max_dihedral}, 2);
   json_number(out, "volume_length", options->volume_length);
+  json_text(out, "regions", options->regions == LAVES_REGIONS_PARTS ? "parts" : "none");
+  json_boolean(out, "face_sources", options->face_sources);
   sizing_write_json(out, given);
   json_close(out);
 }
@@ -240,6 +243,7 @@ static void mesh_json(json *out, const session *run, const void *facts) {
     json_integer(out, "vertices", (int64_t)laves_mesh_vertex_count(all->mesh));
     json_integer(out, "faces", (int64_t)laves_mesh_face_count(all->mesh));
   }
+  if (all->mesh) groups_write_json(out, all->mesh);
   outputs_write_json(out, &all->plan);
   json_text(out, "certificate", all->plan.certificate_bytes > 0 ? all->plan.certificate : NULL);
   if (all->mesh) write_times(out, run, all);
