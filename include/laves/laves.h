@@ -191,11 +191,11 @@ typedef struct laves_domain_info {
   bool winding;            ///< inside is decided by the generalised winding number
   size_t defects[LAVES_DEFECT_COUNT];
   double defect_place[LAVES_DEFECT_COUNT][3];  ///< a place where the first of each kind stands
-  int tag_count;                               ///< named parts; see laves_domain_tag_name()
+  int tag_count;                               ///< named parts, of implicit solids too; see laves_domain_tag_name()
 } laves_domain_info;
 
 LAVES_API void laves_domain_get_info(const laves_domain *domain, laves_domain_info *info);
-/// Name of a tag (STL solid, OBJ group, ...), or NULL when index is not in [0, tag_count). Owned by the domain.
+/// Name of a tag (STL solid, OBJ group, part of a script, ...), or NULL when index is not in [0, tag_count). Owned by the domain.
 LAVES_API const char *laves_domain_tag_name(const laves_domain *domain, int index);
 
 /// One place where a solid is thin.
