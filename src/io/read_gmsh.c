@@ -213,13 +213,14 @@ static laves_result read_entity(reader *r, int dimension, laves_error *error) {
   if (!next_int(r, &number) || !skip_doubles(r, dimension == 0 ? 3 : 6) || !next_size(r, &physical_count))
     return fail_short(r, error, "an entity");
   if (physical_count > 0 && !next_int(r, &physical)) return fail_short(r, error, "a physical group");
-  if (!skip_ints(r, physical_count - 1)) return fail_short(r, error, "a physical group");
+  if (physical_count > 0 && !skip_ints(r, physical_count - 1)) return fail_short(r, error, "a physical group");
   if (dimension > 0 && (!next_size(r, &bounding_count) || !skip_ints(r, bounding_count)))
     return fail_short(r, error, "a bounding entity");
   /* Negative numbers tell the direction of the group, not another group. */
+  if (dimension < 2 || physical == 0) return LAVES_OK;
+  if (physical > INT32_MAX || physical < -INT32_MAX)
+    return laves__mesh_input_fail(r->input, error, "physical group %lld is too large", (long long)physical);
   const int64_t group = physical < 0 ? -physical : physical;
-  if (dimension < 2 || group == 0) return LAVES_OK;
-  if (group > INT32_MAX) return laves__mesh_input_fail(r->input, error, "physical group %lld is too large", (long long)group);
   if (!table_add(r, &r->entities[dimension - 2], number, (int32_t)group)) return laves__fail_memory(r->input->context, error);
   return LAVES_OK;
 }
