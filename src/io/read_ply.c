@@ -184,7 +184,8 @@ static laves_result end_header(ply_file *file) {
   }
   file->build->binary = file->encoding != ASCII;
   for (size_t i = 0; i < file->element_count; ++i) {
-    if (laves__word_is(file->elements[i].name, "face")) choose_label(file, &file->elements[i]);
+    ply_element *element = &file->elements[i];
+    if (element->property_count > 0 && laves__word_is(element->name, "face")) choose_label(file, element);
   }
   return LAVES_OK;
 }
