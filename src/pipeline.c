@@ -368,9 +368,11 @@ static laves_result refine_where_distant(run *r, laves_mesh **mesh, bool *again)
 }
 
 static laves_result find_regions(run *r, laves_mesh *mesh) {
-  if (r->options->regions == LAVES_REGIONS_NONE) return LAVES_OK;
+  const bool named = r->domain->oracle.region != NULL;
+  if (!named && r->options->regions == LAVES_REGIONS_NONE) return LAVES_OK;
   begin_stage(r);
-  const laves_result result = laves__regions_of_parts(r->context, r->domain, mesh, &r->regions, r->error);
+  const laves_result result =
+      (named ? laves__regions_of_names : laves__regions_of_parts)(r->context, r->domain, mesh, &r->regions, r->error);
   end_stage(r, "regions");
   return result;
 }
@@ -380,8 +382,7 @@ static void judge_parts(run *r, const laves_mesh *mesh) {
   const laves_options *o = r->options;
   if (o->face_sources && !mesh->face_sources)
     warn(r, "the nearest faces of the input were asked for, but the input is not made of faces");
-  if (o->regions == LAVES_REGIONS_NONE) return;
-  if (r->regions.parts < 2)
+  if (o->regions == LAVES_REGIONS_PARTS && r->regions.parts < 2)
     warn(r, "regions were asked for, but the input does not have two closed parts; the mesh is one region");
   if (r->regions.empty)
     warn(r, "%zu of the %zu parts of the input hold no tetrahedron at this size", r->regions.empty, r->regions.parts);

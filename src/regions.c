@@ -1,9 +1,11 @@
-/* Regions of the mesh: which closed part of the input surface each tetrahedron is in.
+/* Regions of the mesh: which closed part of the input surface, or named part of a formula, each tetrahedron is in.
  *
  * The part that holds a tet's centroid is asked by winding numbers, which are not cheap; but tets which the surface (all of it,
  * the walls between parts as well) does not come near need not be asked one by one: if the ball about the centroid that holds a
  * tet's corners touches no triangle, all of the tet is in one part, and so is its neighbour across a face if the same is true of
  * it. So one tet is asked for each set of such tets that hang together, and beside these only tets near the surface.
+ *
+ * Formulas are cheap, and each tet's centroid is asked.
  *
  * The mesh's boundary is not quite the surface, so the centroid of a flat tet may be just outside of every part. Such a tet takes
  * the least region among its neighbours. */
@@ -208,5 +210,57 @@ laves_result laves__regions_of_parts(laves_context *context, const laves_domain 
   laves__free(context, g.label, tets, sizeof *g.label);
   laves__free(context, g.stack, tets, sizeof *g.stack);
   laves__parts_free(g.parts);
+  return result;
+}
+
+/* ---- regions of formulas ---- */
+
+typedef struct naming {
+  const laves__oracle *oracle;
+  const laves_mesh *mesh;
+  int32_t *region;
+  size_t *interfaces; /* [workers] */
+} naming;
+
+static void ask_all(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const naming *n = user;
+  const laves__vec3 *p = n->mesh->points;
+  for (size_t t = begin; t < end; t++) {
+    const int32_t *v = n->mesh->tets[t];
+    const laves__vec3 sum = v3_add(v3_add(p[v[0]], p[v[1]]), v3_add(p[v[2]], p[v[3]]));
+    n->region[t] = 1 + n->oracle->region(n->oracle->self, v3_sub(v3_scale(sum, 0.25), n->oracle->origin));
+  }
+}
+
+static void count_interface(void *user, uint32_t low, const laves__face_use *uses, size_t count, int worker) {
+  const naming *n = user;
+  (void)low;
+  if (count == 2) n->interfaces[worker] += n->region[uses[0].slot / 4] != n->region[uses[1].slot / 4];
+}
+
+laves_result laves__regions_of_names(laves_context *context, const laves_domain *domain, laves_mesh *mesh,
+                                     laves__region_counts *counts, laves_error *error) {
+  const size_t tets = mesh->tet_count, workers = (size_t)laves__workers(context);
+  naming n = {.oracle = &domain->oracle, .mesh = mesh};
+  memset(counts, 0, sizeof *counts);
+  counts->parts = (size_t)domain->region_count;
+  n.region = laves__alloc(context, tets, sizeof *n.region);
+  n.interfaces = laves__alloc_zeroed(context, workers, sizeof *n.interfaces);
+  laves_result result = n.region && n.interfaces ? LAVES_OK : laves__fail_memory(context, error);
+  if (result == LAVES_OK && !laves__parallel_for(context, "regions", tets, 256, ask_all, &n))
+    result = laves__fail_cancelled(error);
+  if (result == LAVES_OK)
+    result = laves__match_faces(context, "regions", (const int32_t(*)[4])mesh->tets, tets, mesh->vertex_count, count_interface,
+                                &n, error);
+  for (size_t w = 0; w < workers && result == LAVES_OK; w++) counts->interfaces += n.interfaces[w];
+  for (int i = 0; i < domain->region_count && result == LAVES_OK; i++)
+    if (!laves__mesh_add_group(mesh, 3, i + 1, domain->region_names[i])) result = laves__fail_memory(context, error);
+  if (result == LAVES_OK) {
+    mesh->regions = n.region;
+    n.region = NULL;
+  }
+  laves__free(context, n.region, tets, sizeof *n.region);
+  laves__free(context, n.interfaces, workers, sizeof *n.interfaces);
   return result;
 }

@@ -1,4 +1,4 @@
-/* Regions of the mesh: which closed part of the input surface each tetrahedron is in. */
+/* Regions of the mesh: which closed part of the input surface, or named part of a formula, each tetrahedron is in. */
 #ifndef LAVES_REGIONS_H
 #define LAVES_REGIONS_H
 
@@ -15,6 +15,11 @@ typedef struct laves__region_counts {
  * no closed part ("rest"); and adds the names. Domains that are no surface have no parts. LAVES_ERROR_MEMORY,
  * LAVES_ERROR_CANCELLED, LAVES_ERROR_OPTION when there are more tets than can be handled (2^32). */
 laves_result laves__regions_of_parts(laves_context *context, const laves_domain *domain, laves_mesh *mesh,
+                                     laves__region_counts *counts, laves_error *error);
+
+/* The same for domains with named regions (oracle.region): 1 for what has no name, and so on in the order of the names.
+ * LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
+laves_result laves__regions_of_names(laves_context *context, const laves_domain *domain, laves_mesh *mesh,
                                      laves__region_counts *counts, laves_error *error);
 
 #endif

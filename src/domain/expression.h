@@ -45,7 +45,8 @@
   OP(LEAF, 3)   /* the oracle number `value`, evaluated at input coordinates (a, b, c) */                     \
   OP(AFFINE, 1) /* a, with x, y, z replaced by those of matrix number `value`; gone after lowering */         \
   OP(WARP, 1)   /* a, with x, y, z replaced by the expressions of warp number `value`; gone after lowering */ \
-  OP(TAG, 1)    /* a, the surface of which is named `value`; tapes keep it beside their instructions */
+  OP(TAG, 1)    /* a, the surface of which is named `value`; tapes keep it beside their instructions */       \
+  OP(REGION, 1) /* a, the inside of which is named `value`; the same */
 
 typedef enum laves__op {
 #define LAVES__OP_ENUM(name, operands) LAVES__OP_##name,
@@ -104,6 +105,8 @@ laves__node laves__node_leaf(laves__expression *e, uint32_t index);
 laves__node laves__node_affine(laves__expression *e, laves__node body, const laves__affine *map);
 /* a, named. What has a name keeps it, and constants have no surface: these come back as they are. */
 laves__node laves__node_tag(laves__expression *e, laves__node a, uint32_t tag);
+/* The same for its inside; it may have several names. */
+laves__node laves__node_region(laves__expression *e, laves__node a, uint32_t region);
 laves__node laves__node_warp(laves__expression *e, laves__node body, const laves__node coordinate[3]);
 
 bool laves__node_is_constant(const laves__expression *e, laves__node a, double *value);

@@ -173,6 +173,11 @@ static int32_t tag(const void *self, laves__vec3 foot, uint32_t hint) {
   return found == LAVES__NO_TAG ? 0 : found;
 }
 
+static int32_t region(const void *self, laves__vec3 point) {
+  const int32_t found = laves__tape_region_at(&((const implicit *)self)->tape, point);
+  return found == LAVES__NO_TAG ? 0 : found;
+}
+
 /* ---- samples: where cells of a grid meet the surface ---- */
 
 typedef struct sampler {
@@ -263,17 +268,24 @@ static laves_result copy_leaves(implicit *s, laves_context *context, laves_error
   return LAVES_OK;
 }
 
-/* Hands the names over to the domain. */
+/* Takes the names out of a list, in an array of just their number. */
+static bool take_names(laves_context *context, laves__tag_list *list, char ***names, int *count) {
+  if (list->count == 0) return true;
+  char **fitted = laves__realloc(context, list->names, list->capacity, list->count, sizeof *list->names);
+  if (!fitted) return false;
+  *names = fitted;
+  *count = (int)list->count;
+  list->names = NULL;
+  list->count = list->capacity = 0;
+  return true;
+}
+
 static laves_result fill_names(laves_domain *domain, implicit *s, laves_error *error) {
-  laves__tag_list *names = &s->model.names;
-  if (names->count == 0) return LAVES_OK;
-  char **fitted = laves__realloc(domain->context, names->names, names->capacity, names->count, sizeof *names->names);
-  if (!fitted) return laves__fail_memory(domain->context, error);
-  domain->tag_names = fitted;
-  domain->info.tag_count = (int)names->count;
-  domain->oracle.tag = tag;
-  names->names = NULL;
-  names->count = names->capacity = 0;
+  if (!take_names(domain->context, &s->model.names, &domain->tag_names, &domain->info.tag_count) ||
+      !take_names(domain->context, &s->model.regions, &domain->region_names, &domain->region_count))
+    return laves__fail_memory(domain->context, error);
+  if (domain->info.tag_count > 0) domain->oracle.tag = tag;
+  if (s->tape.region_count > 0) domain->oracle.region = region;
   return LAVES_OK;
 }
 

@@ -55,6 +55,9 @@ typedef struct laves__oracle {
    * NULL: the domain is not made of faces. */
   int32_t (*source)(const void *self, laves__vec3 foot, uint32_t hint);
 
+  /* The named region that a point inside is in; NULL: no regions are named. */
+  int32_t (*region)(const void *self, laves__vec3 point);
+
   /* Deterministic samples of the surface, spaced by about `spacing`, at most `capacity` of them into points; returns
    * how many there are. NULL: not available. */
   size_t (*sample)(const void *self, double spacing, laves__vec3 *points, size_t capacity);
@@ -89,6 +92,8 @@ struct laves_domain {
   laves_domain_info info; /* in input coordinates */
   char format[48];
   char **tag_names; /* info.tag_count of them, each allocated with its length + 1 */
+  char **region_names;
+  int region_count;
 };
 
 /* Makers, one file each; they fill oracle, info, format and tags of a zeroed domain. */

@@ -15,6 +15,7 @@ typedef struct laves__model {
   laves_domain **leaves; /* surfaces that LEAF nodes number */
   size_t leaf_count, leaf_capacity;
   laves__tag_list names;    /* of parts of the surface; the first is that of all that has no other. Empty: nothing is named */
+  laves__tag_list regions;  /* the same for the inside */
   uint32_t *leaf_tag_first; /* [leaf_count + 1] or NULL: where the names of each leaf's own parts begin in ... */
   size_t leaf_first_capacity;
   int32_t *leaf_tags; /* ... this list */
@@ -24,9 +25,9 @@ typedef struct laves__model {
 /* Arguments as of laves__implicit_build(). The model is set up here; free it in any case. */
 laves_result laves__script_run(laves_context *context, const char *text, size_t length, bool is_expression, const char *name,
                                const char *folder, laves__model *model, laves_error *error);
-/* The number of a name, which is new or known; LAVES__NO_TAG_NUMBER: memory is short. */
-int32_t laves__model_name(laves_context *context, laves__model *model, const char *name, size_t length);
-#define LAVES__NO_TAG_NUMBER (-1)
+/* The number of a name in one of the model's lists, whether new or known; negative: memory is short. The list's first name is
+ * `rest`. */
+int32_t laves__model_name(laves_context *context, laves__tag_list *list, const char *rest, const char *name, size_t length);
 void laves__model_free(laves_context *context, laves__model *model);
 
 /* The same for a size of elements: the chunk returns a number or a field of x, y, z and `d`, the depth below the surface.

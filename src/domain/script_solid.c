@@ -224,6 +224,9 @@ static int warp(lua_State *L) {
 
 /* ---- names ---- */
 
+/* What no part of the surface is named. */
+static const char rest_of_surface[] = "boundary";
+
 /* The most bytes of a name: what meshes hold. */
 enum { NAME_MAX_BYTES = 99 };
 
@@ -232,21 +235,31 @@ static int out_of_memory(lua_State *L) {
   return luaL_error(L, "out of memory");
 }
 
-/* tag("name", solid), or solid:tag("name"). */
-static int tag(lua_State *L) {
+typedef struct naming {
+  const char *name, *rest; /* of the function; of what gets no name */
+  bool inside;             /* else the surface */
+} naming;
+
+static const naming namings[] = {{"tag", rest_of_surface, false}, {"region", "solid", true}};
+
+/* tag("name", solid), or solid:tag("name"); the same for region. */
+static int name_solid(lua_State *L) {
+  const naming *n = &namings[lua_tointeger(L, lua_upvalueindex(1))];
   laves__script *script = laves__script_of(L);
+  laves__model *model = script->model;
   const int name_at = lua_type(L, 1) == LUA_TSTRING ? 1 : 2;
   size_t length = 0;
   if (lua_type(L, name_at) != LUA_TSTRING)
-    return luaL_error(L, "tag: expected a name in quotes and a solid, not %s", laves__script_type(L, name_at));
+    return luaL_error(L, "%s: expected a name in quotes and a solid, not %s", n->name, laves__script_type(L, name_at));
   const char *name = lua_tolstring(L, name_at, &length);
-  const laves__shape a = laves__script_solid(L, 3 - name_at, "tag");
+  const laves__shape a = laves__script_solid(L, 3 - name_at, n->name);
   if (length == 0 || length > NAME_MAX_BYTES || strlen(name) != length)
-    return luaL_error(L, "tag: a name has 1 to %d bytes, none of them zero", (int)NAME_MAX_BYTES);
-  const int32_t number = laves__model_name(script->context, script->model, name, length);
+    return luaL_error(L, "%s: a name has 1 to %d bytes, none of them zero", n->name, (int)NAME_MAX_BYTES);
+  laves__tag_list *list = n->inside ? &model->regions : &model->names;
+  const int32_t number = laves__model_name(script->context, list, n->rest, name, length);
   if (number < 0) return out_of_memory(L);
   laves__shape named = a;
-  named.node = laves__node_tag(store(L), a.node, (uint32_t)number);
+  named.node = (n->inside ? laves__node_region : laves__node_tag)(store(L), a.node, (uint32_t)number);
   return push(L, named);
 }
 
@@ -293,7 +306,7 @@ static bool name_parts(laves_context *context, laves__model *model, const laves_
   for (int i = 0; i < leaf->info.tag_count; i++) {
     char name[NAME_MAX_BYTES + 1];
     snprintf(name, sizeof name, "%.*s/%s", stem_length, stem, leaf->tag_names[i]);
-    const int32_t number = laves__model_name(context, model, name, strlen(name));
+    const int32_t number = laves__model_name(context, &model->names, rest_of_surface, name, strlen(name));
     if (number < 0) return false;
     model->leaf_tags[model->leaf_tag_count++] = number;
   }
@@ -349,7 +362,6 @@ static const luaL_Reg solid_functions[] = {
     {"repeat_grid", repeat_grid},
     {"repeat_polar", repeat_polar},
     {"surface", surface},
-    {"tag", tag},
     {NULL, NULL},
 };
 
@@ -361,6 +373,11 @@ void laves__script_add_solids(lua_State *L) {
     lua_pushinteger(L, (lua_Integer)i);
     lua_pushcclosure(L, combine, 1);
     lua_setfield(L, -2, combinations[i].name);
+  }
+  for (size_t i = 0; i < LAVES__COUNT_OF(namings); i++) {
+    lua_pushinteger(L, (lua_Integer)i);
+    lua_pushcclosure(L, name_solid, 1);
+    lua_setfield(L, -2, namings[i].name);
   }
   for (lua_pushnil(L); lua_next(L, -2);) {
     lua_pushvalue(L, -2);

@@ -20,6 +20,13 @@ static bool stop_soon(void *user, const char *phase, double fraction) {
   return --*left > 0;
 }
 
+static void check_region(const laves_domain *domain, laves__vec3 point) {
+  const laves__oracle *o = &domain->oracle;
+  if (!o->region) return;
+  const int32_t region = o->region(o->self, point);
+  FUZZ_REQUIRE(region >= 0 && region < domain->region_count);
+}
+
 static void check_box(const laves_domain *domain, laves__box3 box) {
   const laves__oracle *o = &domain->oracle;
   const laves__vec3 centre = box3_centre(box), half = v3_sub(box.upper, centre);
@@ -27,6 +34,7 @@ static void check_box(const laves_domain *domain, laves__box3 box) {
   const laves__vec3 points[3] = {centre, v3_lerp(centre, box.lower, 0.99), v3_lerp(centre, box.upper, 0.7)};
   double phi[3];
   o->evaluate(o->self, 3, points, phi, NULL);
+  check_region(domain, centre);
   for (int i = 0; i < 3; i++) {
     FUZZ_REQUIRE(isfinite(phi[i]));
     if (side != LAVES__UNDECIDED) FUZZ_REQUIRE(side == LAVES__OUTSIDE ? phi[i] > 0 : phi[i] < 0);

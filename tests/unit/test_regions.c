@@ -136,6 +136,30 @@ static void one_part_is_no_region(void **state) {
   shape_free(&s);
 }
 
+/* Named insides of formulas: the first named counts, names move with their solid, and what has none is "solid". */
+static void named_solids_become_regions(void **state) {
+  (void)state;
+  static const char text[] =
+      "union(region('core', sphere(0.5)), region('shell', sphere(1))):move(10, 0, 0)"
+      " + (region('half', x - 13) & box{1, 1, 1}:move(13, 0, 0)) + box{1, 1, 1}:move(13, 0, 0)";
+  laves_context *context = laves_context_create(NULL);
+  laves_options options = options_of_size(0.09);
+  laves_report report;
+  laves_mesh *mesh = mesh_of_expression(context, text, &options, &report);
+  assert_non_null(mesh->regions);
+  double volumes[4];
+  region_volumes(mesh, volumes, 4);
+  static const double expected[4] = {0.5, 0.5236, 4.18879 - 0.5236, 0.5};
+  for (int i = 0; i < 4; i++)
+    if (fabs(volumes[i] / expected[i] - 1) > 0.06) fail_msg("region %d: volume %g, not %g", i + 1, volumes[i], expected[i]);
+  static const char *const names[4] = {"solid", "core", "shell", "half"};
+  for (int i = 0; i < 4; i++) assert_string_equal(laves_mesh_group_name(mesh, 3, i + 1), names[i]);
+  assert_true(warned(&report, "interfaces between regions follow the tetrahedra"));
+  laves_mesh_free(mesh);
+  assert_int_equal(laves_context_bytes(context), 0);
+  laves_context_free(context);
+}
+
 /* Of three boxes one is open, and one smaller than any tet. */
 static void what_is_in_no_part_is_the_rest(void **state) {
   (void)state;
@@ -281,6 +305,7 @@ int main(void) {
       cmocka_unit_test(nested_parts_become_regions),
       cmocka_unit_test(regions_do_not_depend_on_threads),
       cmocka_unit_test(one_part_is_no_region),
+      cmocka_unit_test(named_solids_become_regions),
       cmocka_unit_test(what_is_in_no_part_is_the_rest),
       cmocka_unit_test(faces_know_the_triangle_they_lie_on),
       cmocka_unit_test(polygons_count_once),
