@@ -319,7 +319,9 @@ struct laves__parts {
   const laves__surface *surface;
   solid_part *part; /* [capacity]; kept ones first, as the file gives them */
   size_t count, capacity;
-  uint32_t *by_volume; /* [capacity] the count first: least volume first */
+  uint32_t *rank;    /* [capacity] of each by volume: 0 has the least */
+  laves__bvh boxes;  /* over the parts' boxes, as triangles that have these for theirs */
+  uint32_t *part_at; /* [capacity] the part at each slot of it */
 };
 
 /* All triangles, walls inside the solid included. */
@@ -364,18 +366,44 @@ static void free_part(laves_context *context, solid_part *part) {
   laves__bvh_free(context, &part->tree);
 }
 
-/* Least volume first; insertion by halves, as parts mostly come in no order but are few. */
-static void insert_by_volume(laves__parts *parts, uint32_t index) {
-  size_t low = 0, high = index;
-  while (low < high) {
-    const size_t middle = low + (high - low) / 2;
-    if (parts->part[parts->by_volume[middle]].volume <= parts->part[index].volume)
-      low = middle + 1;
-    else
-      high = middle;
+typedef struct measured {
+  double volume;
+  uint32_t part;
+} measured;
+
+static int compare_measured(const void *a, const void *b) {
+  const measured *x = a, *y = b;
+  if (x->volume != y->volume) return x->volume < y->volume ? -1 : 1;
+  return (x->part > y->part) - (x->part < y->part);
+}
+
+static bool rank_parts(laves__parts *parts) {
+  measured *list = laves__alloc(parts->context, parts->count, sizeof *list);
+  if (!list) return false;
+  for (size_t i = 0; i < parts->count; i++) list[i] = (measured){parts->part[i].volume, (uint32_t)i};
+  qsort(list, parts->count, sizeof *list, compare_measured);
+  for (size_t i = 0; i < parts->count; i++) parts->rank[list[i].part] = (uint32_t)i;
+  laves__free(parts->context, list, parts->count, sizeof *list);
+  return true;
+}
+
+/* The tree over the boxes. */
+static bool build_boxes(laves__parts *parts) {
+  const size_t count = parts->count;
+  laves__vec3 *points = laves__alloc(parts->context, 2 * count, sizeof *points);
+  uint32_t(*faces)[3] = laves__alloc(parts->context, count, sizeof *faces);
+  const bool enough = points && faces;
+  for (uint32_t i = 0; enough && i < count; i++) {
+    points[2 * i] = parts->part[i].box.lower;
+    points[2 * i + 1] = parts->part[i].box.upper;
+    faces[i][0] = 2 * i;
+    faces[i][1] = faces[i][2] = 2 * i + 1;
   }
-  memmove(parts->by_volume + low + 1, parts->by_volume + low, (index - low) * sizeof *parts->by_volume);
-  parts->by_volume[low] = index;
+  const bool done =
+      enough && laves__bvh_build(parts->context, points, (const uint32_t(*)[3])faces, count, parts->part_at, &parts->boxes);
+  laves__free(parts->context, points, 2 * count, sizeof *points);
+  laves__free(parts->context, faces, count, sizeof *faces);
+  return done;
 }
 
 /* Keeps the closed parts that have an inside: cavities, whose volume is negative, bound what is around them. */
@@ -393,9 +421,9 @@ static bool keep_parts(laves__parts *parts, const uint32_t *starts, const uint32
       free_part(parts->context, kept);
       return false;
     }
-    insert_by_volume(parts, (uint32_t)parts->count++);
+    parts->count++;
   }
-  return true;
+  return parts->count == 0 || (rank_parts(parts) && build_boxes(parts));
 }
 
 laves__parts *laves__parts_create(const laves__surface *s) {
@@ -408,9 +436,10 @@ laves__parts *laves__parts_create(const laves__surface *s) {
   uint32_t *starts = laves__alloc_zeroed(context, s->part_count + 2, sizeof *starts);
   uint32_t *slots = laves__alloc(context, faces, sizeof *slots);
   parts->part = laves__alloc(context, s->part_count, sizeof *parts->part);
-  parts->by_volume = laves__alloc(context, s->part_count, sizeof *parts->by_volume);
+  parts->rank = laves__alloc(context, s->part_count, sizeof *parts->rank);
+  parts->part_at = laves__alloc(context, s->part_count, sizeof *parts->part_at);
   parts->capacity = s->part_count;
-  bool done = starts && slots && parts->part && parts->by_volume;
+  bool done = starts && slots && parts->part && parts->rank && parts->part_at;
   if (done) { /* starts[p + 1] runs from the start of p to its end */
     for (size_t f = 0; f < faces; f++) starts[s->part[f] + 2]++;
     for (size_t p = 0; p < s->part_count; p++) starts[p + 2] += starts[p + 1];
@@ -429,7 +458,9 @@ void laves__parts_free(laves__parts *parts) {
   laves_context *context = parts->context;
   for (size_t i = 0; i < parts->count; i++) free_part(context, &parts->part[i]);
   laves__free(context, parts->part, parts->capacity, sizeof *parts->part);
-  laves__free(context, parts->by_volume, parts->capacity, sizeof *parts->by_volume);
+  laves__free(context, parts->rank, parts->capacity, sizeof *parts->rank);
+  laves__free(context, parts->part_at, parts->capacity, sizeof *parts->part_at);
+  laves__bvh_free(context, &parts->boxes);
   laves__free(context, parts, 1, sizeof *parts);
 }
 
@@ -441,14 +472,25 @@ static bool box_holds(laves__box3 b, laves__vec3 p) {
   return p.x >= b.lower.x && p.x <= b.upper.x && p.y >= b.lower.y && p.y <= b.upper.y && p.z >= b.lower.z && p.z <= b.upper.z;
 }
 
+typedef struct question {
+  const laves__parts *parts;
+  laves__vec3 point;
+  int32_t best; /* part so far, or -1 */
+} question;
+
+static void ask_part(void *user, uint32_t slot) {
+  question *q = user;
+  const laves__parts *parts = q->parts;
+  const uint32_t index = parts->part_at[slot];
+  const solid_part *part = &parts->part[index];
+  if ((q->best >= 0 && parts->rank[q->best] < parts->rank[index]) || !box_holds(part->box, q->point)) return;
+  if (laves__winding_number(&part->winding, q->point, LAVES__NONE, LAVES__NONE) > 0.5) q->best = (int32_t)index;
+}
+
 int32_t laves__parts_at(const laves__parts *parts, laves__vec3 p) {
-  for (size_t i = 0; i < parts->count; i++) {
-    const uint32_t index = parts->by_volume[i];
-    const solid_part *part = &parts->part[index];
-    if (box_holds(part->box, p) && laves__winding_number(&part->winding, p, LAVES__NONE, LAVES__NONE) > 0.5)
-      return (int32_t)index;
-  }
-  return -1;
+  question q = {parts, p, -1};
+  if (parts->count > 0) laves__bvh_overlaps(&parts->boxes, (laves__box3){p, p}, ask_part, &q);
+  return q.best;
 }
 
 bool laves__parts_touch(const laves__parts *parts, laves__vec3 p, double distance) {
