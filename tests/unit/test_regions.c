@@ -188,6 +188,50 @@ static void what_is_in_no_part_is_the_rest(void **state) {
   shape_free(&open);
 }
 
+/* Gives memory so many times, then none. */
+static void *reallocate_a_few_times(void *user, void *pointer, size_t old_bytes, size_t new_bytes) {
+  int *left = user;
+  (void)old_bytes;
+  if (new_bytes == 0) {
+    free(pointer);
+    return NULL;
+  }
+  return __atomic_fetch_sub(left, 1, __ATOMIC_RELAXED) > 0 ? realloc(pointer, new_bytes) : NULL;
+}
+
+/* From the first allocation of the domain to the last of the mesh, in growing steps. */
+static void short_memory_anywhere_leaves_nothing(void **state) {
+  (void)state;
+  shape s = ball_in_ball();
+  bool made = false;
+  for (int allowed = 0, step = 1; !made; allowed += step, step += allowed > 200) {
+    int left = allowed;
+    laves_context_options context_options = laves_context_options_default();
+    context_options.reallocate = reallocate_a_few_times;
+    context_options.reallocate_user = &left;
+    context_options.thread_count = 1;
+    laves_context *context = laves_context_create(&context_options);
+    if (!context) continue;
+    laves_domain *domain = NULL;
+    laves_mesh *mesh = NULL;
+    laves_options options = options_of_size(0.4);
+    options.regions = LAVES_REGIONS_PARTS;
+    options.face_sources = true;
+    options.improve = false;
+    laves_result result =
+        laves_domain_from_triangles(context, s.points, s.point_count, s.triangles, s.triangle_count, NULL, &domain, NULL);
+    if (result == LAVES_OK) result = laves_generate(context, domain, &options, &mesh, NULL, NULL);
+    made = result == LAVES_OK;
+    assert_true(made || result == LAVES_ERROR_MEMORY);
+    assert_true(made == (mesh != NULL));
+    laves_mesh_free(mesh);
+    laves_domain_free(domain);
+    assert_int_equal(laves_context_bytes(context), 0);
+    laves_context_free(context);
+  }
+  shape_free(&s);
+}
+
 /* ---- sources ---- */
 
 /* The input's triangles in a tree of their own; slot[t] is where triangle t stands. */
@@ -307,6 +351,7 @@ int main(void) {
       cmocka_unit_test(one_part_is_no_region),
       cmocka_unit_test(named_solids_become_regions),
       cmocka_unit_test(what_is_in_no_part_is_the_rest),
+      cmocka_unit_test(short_memory_anywhere_leaves_nothing),
       cmocka_unit_test(faces_know_the_triangle_they_lie_on),
       cmocka_unit_test(polygons_count_once),
       cmocka_unit_test(implicit_solids_have_no_sources),

@@ -161,6 +161,46 @@ static void wrong_uses_are_told(void **state) {
   }
 }
 
+/* Every single allocation refused in turn. */
+typedef struct refuser {
+  size_t asked, refused;
+} refuser;
+
+static void *refuse(void *user, void *pointer, size_t old_bytes, size_t new_bytes) {
+  refuser *r = user;
+  (void)old_bytes;
+  if (new_bytes == 0) {
+    free(pointer);
+    return NULL;
+  }
+  if (++r->asked == r->refused) return NULL;
+  return realloc(pointer, new_bytes);
+}
+
+static void each_refused_allocation_is_survived(void **state) {
+  (void)state;
+  bool more = true;
+  for (size_t n = 3; more; n++) { /* the first two make the context */
+    refuser r = {0, n};
+    laves_context_options options = laves_context_options_default();
+    options.reallocate = refuse;
+    options.reallocate_user = &r;
+    options.thread_count = 1;
+    laves_context *context = laves_context_create(&options);
+    if (!context) continue;
+    laves_domain *domain;
+    const laves_result result = laves_domain_from_expression(
+        context, "region('r', tag('a', sphere(1)):move(1, 0, 0)) - tag('b', cylinder{r=0.3, h=4})", &domain, NULL);
+    more = r.asked >= n;
+    assert_true(result == LAVES_OK ? domain->info.tag_count == 3 && domain->region_count == 2 : result == LAVES_ERROR_MEMORY);
+    if (!more) assert_int_equal(result, LAVES_OK);
+    laves_domain_free(domain);
+    assert_int_equal(laves_context_bytes(context), 0);
+    laves_context_free(context);
+    assert_true(n < 10000);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(without_names_there_are_no_tags),
@@ -172,6 +212,7 @@ int main(void) {
       cmocka_unit_test(blends_are_parted_where_their_parts_are_equal),
       cmocka_unit_test(parts_of_files_keep_their_names),
       cmocka_unit_test(wrong_uses_are_told),
+      cmocka_unit_test(each_refused_allocation_is_survived),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
