@@ -3,11 +3,13 @@
  * The header lists elements ("vertex", "face", others), each with a count and properties, which are numbers or lists of
  * numbers of eight types; the data follow in that order. All of them are walked through; used are x, y, z of "vertex",
  * the list vertex_indices (or vertex_index) of "face", or of "tristrips" with -1 between strips, and as tags an integer
- * property of "face", as choose_label() tells. Elements may stand in any order.
+ * property of "face", as choose_label() tells. Elements may stand in any order. Comments such as "comment label 3 inlet" name the
+ * values of a property called "label", as write_surface.c writes them.
  *
  * Every value is handled as a double, which holds all eight types exactly. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "io/surface_build.h"
@@ -38,6 +40,12 @@ typedef struct ply_element {
   unsigned roles; /* bit 1 << role for each that a property has */
 } ply_element;
 
+/* What a comment calls a label. */
+typedef struct ply_name {
+  int64_t label;
+  laves__word name;
+} ply_name;
+
 typedef enum ply_encoding { ENCODING_NONE, ASCII, LITTLE_ENDIAN_BINARY, BIG_ENDIAN_BINARY } ply_encoding;
 
 typedef struct ply_file {
@@ -47,7 +55,9 @@ typedef struct ply_file {
   size_t element_count, element_capacity;
   ply_property *properties;
   size_t property_count, property_capacity;
-  double label; /* that triangles have now; NAN before the first */
+  double label;    /* that triangles have now; NAN before the first */
+  ply_name *names; /* ascending once the header is read */
+  size_t name_count, name_capacity;
 } ply_file;
 
 bool laves__is_ply(laves__scan scan) {
@@ -136,6 +146,39 @@ static laves_result read_property(ply_file *file) {
   return LAVES_OK;
 }
 
+/* A comment, of which the scan is behind the first word. */
+static laves_result read_comment(ply_file *file) {
+  laves__scan *scan = &file->build->scan;
+  ply_name named;
+  if (!laves__scan_keyword(scan, "label") || !laves__scan_int(scan, &named.label)) return LAVES_OK;
+  named.name = laves__scan_rest(scan);
+  if (named.name.length == 0) return LAVES_OK;
+  if (!laves__grow(file->build->context, &file->names, &file->name_capacity, file->name_count + 1, sizeof named))
+    return laves__fail_memory(file->build->context, file->build->error);
+  file->names[file->name_count++] = named;
+  return LAVES_OK;
+}
+
+/* By label, then by place in the file. */
+static int compare_names(const void *a, const void *b) {
+  const ply_name *x = a, *y = b;
+  if (x->label != y->label) return x->label < y->label ? -1 : 1;
+  return (x->name.at > y->name.at) - (x->name.at < y->name.at);
+}
+
+/* The first name of a label, or NULL. */
+static const ply_name *find_name(const ply_file *file, double label) {
+  size_t low = 0, high = file->name_count;
+  while (low < high) {
+    const size_t middle = low + (high - low) / 2;
+    if ((double)file->names[middle].label < label)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < file->name_count && (double)file->names[low].label == label ? &file->names[low] : NULL;
+}
+
 /* Whether a property of faces may be a label, going by its type: a colour or a flag is none. */
 static bool can_be_label(const ply_property *property) {
   static const char *const OTHERS[] = {"red", "green", "blue", "alpha", "r", "g", "b", "a", "flags", "flag", "quality"};
@@ -183,6 +226,7 @@ static laves_result end_header(ply_file *file) {
     return laves__build_fail(file->build, "the header has no line 'format'");
   }
   file->build->binary = file->encoding != ASCII;
+  if (file->name_count > 0) qsort(file->names, file->name_count, sizeof *file->names, compare_names);
   for (size_t i = 0; i < file->element_count; ++i) {
     ply_element *element = &file->elements[i];
     if (element->property_count > 0 && laves__word_is(element->name, "face")) choose_label(file, element);
@@ -201,7 +245,9 @@ static laves_result read_header(ply_file *file) {
       result = read_element(file);
     } else if (laves__scan_keyword(scan, "property")) {
       result = read_property(file);
-    } else if (!laves__scan_keyword(scan, "comment") && !laves__scan_keyword(scan, "obj_info") && laves__scan_blanks(scan)) {
+    } else if (laves__scan_keyword(scan, "comment")) {
+      result = read_comment(file);
+    } else if (!laves__scan_keyword(scan, "obj_info") && laves__scan_blanks(scan)) {
       result = laves__scan_fail_expected(scan, file->build->error, "element, property, comment or end_header");
     }
   }
@@ -382,7 +428,9 @@ static laves_result change_label(ply_file *file, const ply_element *element, dou
   char text[64];
   const int length = snprintf(text, sizeof text, "%.*s %.0f", (int)kind.length, kind.at, label);
   file->label = label;
-  const bool started = laves__tag_list_start(build->context, &build->tags, text, (size_t)length, first_triangle, "unlabelled");
+  const ply_name *known = laves__word_is(kind, "label") ? find_name(file, label) : NULL;
+  const laves__word name = known ? known->name : (laves__word){text, (size_t)length};
+  const bool started = laves__tag_list_start(build->context, &build->tags, name.at, name.length, first_triangle, "unlabelled");
   return started ? LAVES_OK : laves__fail_memory(build->context, build->error);
 }
 
@@ -446,5 +494,6 @@ laves_result laves__read_ply(laves__surface_build *build) {
   }
   laves__free(build->context, file.elements, file.element_capacity, sizeof *file.elements);
   laves__free(build->context, file.properties, file.property_capacity, sizeof *file.properties);
+  laves__free(build->context, file.names, file.name_capacity, sizeof *file.names);
   return result;
 }

@@ -48,9 +48,10 @@ static void labels_become_tags(void **state) {
   assert_tag_names(TEXT_FILE("x", ASCII_FILE), "");
 }
 
-#define TWO_FACES(properties, first, second)                                                             \
-  "ply\nformat ascii 1.0\n" VERTEX "element face 2\nproperty list uchar int vertex_indices\n" properties \
-  "end_header\n"                                                                                         \
+#define TWO_FACES(properties, first, second) "ply\n" TWO_FACES_AFTER_PLY(properties, first, second)
+#define TWO_FACES_AFTER_PLY(properties, first, second)                                              \
+  "format ascii 1.0\n" VERTEX "element face 2\nproperty list uchar int vertex_indices\n" properties \
+  "end_header\n"                                                                                    \
   "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 " first "\n3 0 2 3 " second "\n"
 
 /* Whatever it is called, the only integer of a face is its label, but for colours and flags. */
@@ -62,6 +63,13 @@ static void any_integer_may_be_the_label(void **state) {
   assert_tag_names(TEXT_FILE("x", TWO_FACES("property uchar red\nproperty uchar green\nproperty uchar blue\n", "1 2 3", "4 5 6")),
                    "");
   assert_tag_names(TEXT_FILE("x", TWO_FACES("property float label\n", "1", "2")), "");
+  /* Comments name the values of "label". */
+  assert_tag_names(TEXT_FILE("x",
+                             "ply\ncomment label 5 the inlet  \ncomment label 4\ncomment label 5 other\n"
+                             "comment labels 4 x\n" TWO_FACES_AFTER_PLY("property int label\n", "4", "5")),
+                   "label 4,the inlet");
+  assert_tag_names(TEXT_FILE("x", "ply\ncomment label 5 inlet\n" TWO_FACES_AFTER_PLY("property int tag\n", "4", "5")),
+                   "tag 4,tag 5");
   /* Of two unknown ones neither is meant; of known ones the first of the list counts. */
   assert_tag_names(TEXT_FILE("x", TWO_FACES("property int a1\nproperty int b1\n", "1 2", "3 4")), "");
   assert_tag_names(TEXT_FILE("x", TWO_FACES("property int object\nproperty int material\n", "1 2", "3 4")),
