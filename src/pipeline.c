@@ -319,6 +319,29 @@ static laves_result name_groups(const run *r, laves_mesh *mesh) {
   return LAVES_OK;
 }
 
+static laves_result find_regions(run *r, laves_mesh *mesh) {
+  const bool named = r->domain->oracle.region != NULL;
+  if (!named && r->options->regions == LAVES_REGIONS_NONE) return LAVES_OK;
+  begin_stage(r);
+  const laves_result result =
+      (named ? laves__regions_of_names : laves__regions_of_parts)(r->context, r->domain, mesh, &r->regions, r->error);
+  end_stage(r, "regions");
+  return result;
+}
+
+/* What was asked about parts of the input, and is not there or not as it may seem. */
+static void judge_parts(run *r, const laves_mesh *mesh) {
+  const laves_options *o = r->options;
+  if (o->face_sources && !mesh->face_sources)
+    warn(r, "the nearest faces of the input were asked for, but the input is not made of faces");
+  if (o->regions == LAVES_REGIONS_PARTS && r->regions.parts < 2)
+    warn(r, "regions were asked for, but the input does not have two closed parts; the mesh is one region");
+  if (r->regions.empty)
+    warn(r, "%zu of the %zu parts of the input hold no tetrahedron at this size", r->regions.empty, r->regions.parts);
+  if (r->regions.interfaces)
+    warn(r, "interfaces between regions follow the tetrahedra, not the surfaces of the parts: %zu faces", r->regions.interfaces);
+}
+
 static laves_result make_mesh(run *r, laves_mesh **mesh) {
   begin_stage(r);
   laves_result result = laves__assemble(&r->frame, &r->lattice, &r->layer, mesh, r->error);
@@ -365,29 +388,6 @@ static laves_result refine_where_distant(run *r, laves_mesh **mesh, bool *again)
     *mesh = NULL;
   }
   return result;
-}
-
-static laves_result find_regions(run *r, laves_mesh *mesh) {
-  const bool named = r->domain->oracle.region != NULL;
-  if (!named && r->options->regions == LAVES_REGIONS_NONE) return LAVES_OK;
-  begin_stage(r);
-  const laves_result result =
-      (named ? laves__regions_of_names : laves__regions_of_parts)(r->context, r->domain, mesh, &r->regions, r->error);
-  end_stage(r, "regions");
-  return result;
-}
-
-/* What was asked about parts of the input, and is not there or not as it may seem. */
-static void judge_parts(run *r, const laves_mesh *mesh) {
-  const laves_options *o = r->options;
-  if (o->face_sources && !mesh->face_sources)
-    warn(r, "the nearest faces of the input were asked for, but the input is not made of faces");
-  if (o->regions == LAVES_REGIONS_PARTS && r->regions.parts < 2)
-    warn(r, "regions were asked for, but the input does not have two closed parts; the mesh is one region");
-  if (r->regions.empty)
-    warn(r, "%zu of the %zu parts of the input hold no tetrahedron at this size", r->regions.empty, r->regions.parts);
-  if (r->regions.interfaces)
-    warn(r, "interfaces between regions follow the tetrahedra, not the surfaces of the parts: %zu faces", r->regions.interfaces);
 }
 
 /* The last word on targets: what was asked and is not there. */
