@@ -5,6 +5,7 @@
 
 #include "command.h"
 #include "feature_report.h"
+#include "groups.h"
 #include "input.h"
 #include "output.h"
 #include "session.h"
@@ -41,6 +42,8 @@ static laves_options make_options(const settings *given, const laves_sizing *siz
   options.method = given->method;
   options.guarantee = given->guarantee;
   options.improve = !given->no_improve;
+  options.regions = given->regions;
+  options.face_sources = given->face_sources;
   if (given->window.given) {
     options.min_dihedral = given->window.values[0];
     options.max_dihedral = given->window.values[1];
@@ -204,6 +207,8 @@ static void write_options(json *out, const settings *given, const laves_options 
   json_boolean(out, "improve", options->improve);
   json_numbers(out, "window", (const double[2]){options->min_dihedral, options->max_dihedral}, 2);
   json_number(out, "volume_length", options->volume_length);
+  json_text(out, "regions", options->regions == LAVES_REGIONS_PARTS ? "parts" : "none");
+  json_boolean(out, "face_sources", options->face_sources);
   sizing_write_json(out, given);
   json_close(out);
 }
@@ -254,6 +259,7 @@ static void mesh_json(json *out, const session *run, const void *facts) {
     json_integer(out, "vertices", (int64_t)laves_mesh_vertex_count(all->mesh));
     json_integer(out, "faces", (int64_t)laves_mesh_face_count(all->mesh));
   }
+  if (all->mesh) groups_write_json(out, all->mesh);
   outputs_write_json(out, &all->plan);
   json_text(out, "certificate", all->plan.certificate_bytes > 0 ? all->plan.certificate : NULL);
   if (all->mesh) write_times(out, run, all);

@@ -13,7 +13,7 @@ enum { MESH = 1, CHECK = 2, INFO = 4, TILING = 8, VIEW = 16, DATA = 15, ALL = 31
 
 const command commands[] = {
     {"mesh", "INPUT", "fill a solid with nearly regular tetrahedra",
-     "INPUT is a triangle surface (STL, OBJ, PLY, OFF; clean or dirty), a Lua script (.lua), or an expression in quotes.\n"
+     "INPUT is a triangle surface (STL, OBJ, PLY, OFF, Gmsh; clean or dirty), a Lua script (.lua), or an expression in quotes.\n"
      "A name that exists as a file is a file. The mesh goes to every --output; without one, to INPUT's base name with .vtu\n"
      "in the current folder (mesh.vtu for an expression). Existing outputs are replaced once the new ones are complete.\n"
      "A certificate, which states and locates what the mesh is, goes beside the first output.",
@@ -163,6 +163,11 @@ const option option_rows[] = {
      "compression of VTU, 0 none to 9 smallest"},
     {"boundary", 0, MESH, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(boundary), 0,
      "also write the boundary surface (.stl, .obj, .ply, .off)"},
+    {"regions", 0, MESH, IN_FILES, OPTION_REGIONS, "HOW", NULL, false, 0, 0, "none", MEMBER(regions), 0,
+     "what tetrahedra are told apart by: none, or parts: the closed parts of the input surface that contain them, the innermost "
+     "where parts are nested (docs/formats.md)"},
+    {"face-sources", 0, MESH, IN_FILES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(face_sources), 0,
+     "write for each boundary triangle the nearest face of the input surface, from 0 (source_face in VTU)"},
     {"certificate", 0, MESH, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0,
      "the first output's name with .certificate.json for its extension", MEMBER(certificate), 0,
      "where the certificate goes (docs/certificate.md); none: write none and leave the final check out"},

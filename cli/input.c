@@ -137,6 +137,8 @@ void input_write_json(json *out, const char *key, const input *in) {
     json_boolean(out, "turned", info->turned);
     json_boolean(out, "winding", info->winding);
     write_defects(out, info);
+  }
+  if (in->domain && info->format && (info->kind == LAVES_DOMAIN_SURFACE || info->tag_count > 0)) {
     json_open_array(out, "tags");
     for (int i = 0; i < info->tag_count; ++i) json_text(out, NULL, laves_domain_tag_name(in->domain, i));
     json_close(out);

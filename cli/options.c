@@ -192,6 +192,17 @@ static bool parse_method(const char *text, laves_method *method, char *wrong) {
   return false;
 }
 
+static bool parse_regions(const char *text, laves_regions *regions, char *wrong) {
+  static const char *const names[] = {"none", "parts"};
+  for (int i = 0; i < 2; ++i) {
+    if (strcmp(text, names[i]) != 0) continue;
+    *regions = (laves_regions)i;
+    return true;
+  }
+  snprintf(wrong, SENTENCE_CAPACITY, "must be none or parts, not '%.30s'", text);
+  return false;
+}
+
 static bool parse_words(const option *row, const char *text, option_texts *list, char *wrong) {
   if (list->count == (int)row->high) {
     snprintf(wrong, SENTENCE_CAPACITY, "can be given %d times at most", list->count);
@@ -225,6 +236,8 @@ static bool store_value(const option *row, const char *text, settings *given, ch
       return parse_cells(row, text, member, wrong);
     case OPTION_METHOD:
       return parse_method(text, member, wrong);
+    case OPTION_REGIONS:
+      return parse_regions(text, member, wrong);
     case OPTION_ALIGNMENT:
       return parse_alignment(text, member, wrong);
     case OPTION_FORMAT:

@@ -39,6 +39,8 @@ typedef struct settings {
   int64_t tets, vertices;     /* 0: not given */
   option_alignment alignment;
   bool no_improve, ascii, quiet, verbose;
+  bool face_sources;
+  laves_regions regions;
   option_numbers window; /* lowest, highest dihedral angle */
   double volume_length;  /* negative: not given */
   bool check_features;
@@ -69,9 +71,10 @@ typedef enum option_kind {
   OPTION_ALIGNMENT, /* option_alignment */
   OPTION_FORMAT,    /* laves_format */
   OPTION_METHOD,    /* laves_method */
+  OPTION_REGIONS,   /* laves_regions */
 } option_kind;
 
-enum { OPTION_KINDS = OPTION_METHOD + 1 };
+enum { OPTION_KINDS = OPTION_REGIONS + 1 };
 
 /* One row of the table. */
 typedef struct option {

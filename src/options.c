@@ -92,6 +92,8 @@ laves_result laves__options_check(const laves_options *o, laves_error *error) {
   if (result == LAVES_OK) result = check_range("volume_length", o->volume_length, 0, 0.8, error);
   if (result == LAVES_OK) result = check_sizing(o, error);
   if (result == LAVES_OK) result = check_optional("feature_angle", o->feature_angle, 1, 179, error);
+  if (result == LAVES_OK && (unsigned)o->regions > LAVES_REGIONS_PARTS)
+    result = laves__fail(error, LAVES_ERROR_OPTION, "regions is %d, which is no laves_regions", (int)o->regions);
   if (result == LAVES_OK && (unsigned)o->align > LAVES_ALIGN_ROTATION)
     result = laves__fail(error, LAVES_ERROR_OPTION, "align is %d, which is no laves_align", (int)o->align);
   if (result == LAVES_OK && o->align == LAVES_ALIGN_ROTATION) result = check_rotation(o->rotation, error);

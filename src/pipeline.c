@@ -19,6 +19,7 @@
 #include "improve/improve.h"
 #include "improve/release.h"
 #include "options.h"
+#include "regions.h"
 #include "snap/snap.h"
 #include "stuff/stuff.h"
 #include "stuff/zone.h"
@@ -50,7 +51,8 @@ typedef struct run {
   int round;                         /* of refinement for the sake of the distance */
   size_t distant;                    /* places still further away than asked */
   bool rough;                        /* the solid is rougher than the size */
-  double wall, cpu;                  /* at the start of the stage under way */
+  laves__region_counts regions;
+  double wall, cpu; /* at the start of the stage under way */
 } run;
 
 static void begin_stage(run *r) {
@@ -92,6 +94,7 @@ static laves_result choose_frame(run *r) {
   r->frame.oracle = oracle;
   r->frame.centre = box3_centre(oracle->bounds);
   r->frame.rotation = laves__options_rotation(r->options, oracle);
+  r->frame.face_sources = r->options->face_sources;
   r->frame.size = laves__options_size(r->options, oracle, r->report->volume);
   end_stage(r, "background");
   if (r->frame.size > 0 && isfinite(r->frame.size)) return LAVES_OK;
@@ -401,7 +404,7 @@ static laves_result improve_and_keep_promise(run *r) {
 }
 
 static laves_result name_groups(const run *r, laves_mesh *mesh) {
-  if (!laves__mesh_add_group(mesh, 3, 1, "solid")) return laves__fail_memory(r->context, r->error);
+  if (!mesh->regions && !laves__mesh_add_group(mesh, 3, 1, "solid")) return laves__fail_memory(r->context, r->error);
   const int tags = mesh->face_tags ? r->domain->info.tag_count : 0;
   if (tags == 0 && !laves__mesh_add_group(mesh, 2, 1, "boundary")) return laves__fail_memory(r->context, r->error);
   for (int i = 0; i < tags; i++)
@@ -409,11 +412,33 @@ static laves_result name_groups(const run *r, laves_mesh *mesh) {
   return LAVES_OK;
 }
 
+static laves_result find_regions(run *r, laves_mesh *mesh) {
+  const bool named = r->domain->oracle.region != NULL;
+  if (!named && r->options->regions == LAVES_REGIONS_NONE) return LAVES_OK;
+  begin_stage(r);
+  const laves_result result =
+      (named ? laves__regions_of_names : laves__regions_of_parts)(r->context, r->domain, mesh, &r->regions, r->error);
+  end_stage(r, "regions");
+  return result;
+}
+
+/* What was asked about parts of the input, and is not there or not as it may seem. */
+static void judge_parts(run *r, const laves_mesh *mesh) {
+  const laves_options *o = r->options;
+  if (o->face_sources && !mesh->face_sources)
+    warn(r, "the nearest faces of the input were asked for, but the input is not made of faces");
+  if (o->regions == LAVES_REGIONS_PARTS && r->regions.parts < 2)
+    warn(r, "regions were asked for, but the input does not have two closed parts; the mesh is one region");
+  if (r->regions.empty)
+    warn(r, "%zu of the %zu parts of the input hold no tetrahedron at this size", r->regions.empty, r->regions.parts);
+  if (r->regions.interfaces)
+    warn(r, "interfaces between regions follow the tetrahedra, not the surfaces of the parts: %zu faces", r->regions.interfaces);
+}
+
 static laves_result make_mesh(run *r, laves_mesh **mesh) {
   begin_stage(r);
   laves_result result = laves__assemble(&r->frame, &r->lattice, &r->layer, mesh, r->error);
   if (result == LAVES_OK && (*mesh)->tet_count == 0) result = nothing_resolved(r); /* slivers, all contracted away */
-  if (result == LAVES_OK) result = name_groups(r, *mesh);
   end_stage(r, "mesh");
   return result;
 }
@@ -524,6 +549,7 @@ static laves_result judge(run *r, const laves_mesh *mesh) {
   if (r->distant)
     warn(r, "at %zu places mesh and surface are further apart than the %g asked for; a smaller min_size may help", r->distant,
          o->max_distance);
+  judge_parts(r, mesh);
   const double wished = o->tet_target ? (double)o->tet_target : (double)o->vertex_target;
   const double got = o->tet_target ? (double)mesh->tet_count : (double)mesh->vertex_count;
   if (wished > 0 && fabs(got / wished - 1) > 0.03) {
@@ -559,6 +585,8 @@ laves_result laves_generate(laves_context *context, const laves_domain *domain, 
     if (result == LAVES_OK) result = refine_where_distant(&r, mesh, &again);
     if (result == LAVES_OK && !again) result = count_again(&r, mesh, &again);
   }
+  if (result == LAVES_OK) result = find_regions(&r, *mesh);
+  if (result == LAVES_OK) result = name_groups(&r, *mesh);
   if (result == LAVES_OK) result = judge_features(&r);
   if (result == LAVES_OK) result = judge(&r, *mesh);
 

@@ -109,7 +109,7 @@ LAVES_API size_t laves_context_peak_bytes(const laves_context *context);
 /// A solid: anything with an inside. Read only once made; safe to read from many threads.
 typedef struct laves_domain laves_domain;
 
-/// Reads a triangle surface (STL, OBJ, PLY, OFF; the format is found from the content) or a Lua script (.lua).
+/// Reads a triangle surface (STL, OBJ, PLY, OFF, Gmsh; the format is found from the content) or a Lua script (.lua).
 /// @param path    file name
 /// @param domain  out: owned by the caller, free with laves_domain_free(); NULL on failure
 /// @param error   out, optional
@@ -191,11 +191,11 @@ typedef struct laves_domain_info {
   bool winding;            ///< inside is decided by the generalised winding number
   size_t defects[LAVES_DEFECT_COUNT];
   double defect_place[LAVES_DEFECT_COUNT][3];  ///< a place where the first of each kind stands
-  int tag_count;                               ///< named parts; see laves_domain_tag_name()
+  int tag_count;                               ///< named parts, of implicit solids too; see laves_domain_tag_name()
 } laves_domain_info;
 
 LAVES_API void laves_domain_get_info(const laves_domain *domain, laves_domain_info *info);
-/// Name of a tag (STL solid, OBJ group, ...), or NULL when index is not in [0, tag_count). Owned by the domain.
+/// Name of a tag (STL solid, OBJ group, part of a script, ...), or NULL when index is not in [0, tag_count). Owned by the domain.
 LAVES_API const char *laves_domain_tag_name(const laves_domain *domain, int index);
 
 /// One place where a solid is thin.
@@ -291,6 +291,11 @@ typedef enum laves_method { LAVES_METHOD_AUTO, LAVES_METHOD_SNAP, LAVES_METHOD_S
 
 typedef enum laves_align { LAVES_ALIGN_NONE, LAVES_ALIGN_PCA, LAVES_ALIGN_ROTATION } laves_align;
 
+/// What becomes a region of the mesh. NONE: all is one. PARTS: each closed part of the input surface, connected by edges or
+/// tagged as one, is the region of the tetrahedra whose centroid it contains, of several parts the one of least volume. Regions
+/// meet along faces of tetrahedra, not along the parts' surfaces, where these lie inside the solid.
+typedef enum laves_regions { LAVES_REGIONS_NONE, LAVES_REGIONS_PARTS } laves_regions;
+
 /// What a mesh shall be. From laves_options_default(), then changed. At most one of size, relative_size, tet_target
 /// and vertex_target may be given; none: a size that suits the domain, about 50 thousand tetrahedra.
 typedef struct laves_options {
@@ -326,7 +331,10 @@ typedef struct laves_options {
   bool feature_tags;     ///< edges between parts of the surface with different tags as well; default false
   const laves_features *features;  ///< more points and lines; NULL: none. Must outlive the call.
   bool keep_thin;                  ///< walls and gaps down to half the size keep their topology, or are named; default true
-  uint32_t cookie;                 ///< set by laves_options_default(), checked by laves_generate()
+  // What the mesh tells of its parts (docs/formats.md).
+  bool face_sources;      ///< boundary faces know the nearest face of the input: laves_mesh_face_sources(); default false
+  laves_regions regions;  ///< what tetrahedra are told apart by; default LAVES_REGIONS_NONE
+  uint32_t cookie;        ///< set by laves_options_default(), checked by laves_generate()
 } laves_options;
 
 LAVES_API laves_options laves_options_default(void);
@@ -424,6 +432,11 @@ LAVES_API const int32_t *laves_mesh_tets(const laves_mesh *mesh);       ///< int
 LAVES_API const int32_t *laves_mesh_faces(const laves_mesh *mesh);      ///< int32_t[face_count][3], outwards
 LAVES_API const int32_t *laves_mesh_regions(const laves_mesh *mesh);    ///< int32_t[tet_count], or NULL: all 1
 LAVES_API const int32_t *laves_mesh_face_tags(const laves_mesh *mesh);  ///< int32_t[face_count], or NULL: all 1
+/// For every boundary triangle the nearest face of the input surface, at the triangle's centroid: faces are counted from 0 as the
+/// input gave them, polygons once; -1: none is near (the triangle closes a hole). int32_t[face_count]; NULL: not asked for
+/// (laves_options.face_sources), or the domain is no surface of triangles. The order in which formats count is in
+/// docs/formats.md.
+LAVES_API const int32_t *laves_mesh_face_sources(const laves_mesh *mesh);
 /// Tets [0, lattice_tet_count) are exact tiles of the tiling; the rest is the boundary layer.
 LAVES_API size_t laves_mesh_lattice_tet_count(const laves_mesh *mesh);
 /// Named groups of regions (dimension 3) and face tags (dimension 2); NULL when the tag has no name.

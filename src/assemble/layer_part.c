@@ -1,7 +1,7 @@
-/* Which of the layer's vertices live, their numbers, and the boundary with its tags. */
+/* Which of the layer's vertices live, their numbers, and the boundary with its tags and sources. */
 #include "assemble/layer_part.h"
 
-#include "domain/features.h"
+#include "domain/held.h"
 
 #include <string.h>
 
@@ -96,7 +96,10 @@ laves_result laves__layer_part_mesh(laves__layer_part *part, int64_t vertices, s
   const int64_t total = number_layer(part, vertices);
   *mesh = laves__mesh_create(context, (size_t)total, stamped + part->tet_count, part->face_count, false,
                              part->frame->oracle->tag != NULL);
-  return *mesh ? LAVES_OK : laves__fail_memory(context, error);
+  if (!*mesh) return laves__fail_memory(context, error);
+  if (!part->frame->face_sources || !part->frame->oracle->source) return LAVES_OK;
+  (*mesh)->face_sources = laves__alloc(context, part->face_count, sizeof *(*mesh)->face_sources);
+  return (*mesh)->face_sources ? LAVES_OK : laves__fail_memory(context, error);
 }
 
 static void write_tets(const laves__layer_part *part, size_t next, laves_mesh *mesh) {
@@ -140,38 +143,64 @@ static void write_faces(const laves__layer_part *part, laves_mesh *mesh) {
 typedef struct tagging {
   const laves__layer_part *part;
   laves_mesh *mesh;
-  int32_t *owner; /* [face_count] a layer vertex of each face, for the hint */
+  int32_t (*corner)[3]; /* [face_count] the layer's vertices of each face */
 } tagging;
 
-/* The tag of the surface nearest to the centroid of each boundary face. */
-static void tag_faces(void *user, size_t begin, size_t end, int worker) {
-  (void)worker;
-  const tagging *g = user;
+/* The foot of a boundary face: the point of the surface nearest to its centroid. All that a face knows of the surface is
+ * what is there. */
+static bool find_foot(const tagging *g, size_t f, laves__vec3 *foot, uint32_t *hint) {
   const laves__frame *frame = g->part->frame;
   const laves__layer *layer = g->part->layer;
   const laves__oracle *oracle = frame->oracle;
+  const int32_t *face = g->mesh->faces[f], *corner = g->corner[f];
+  const laves__vec3 sum = v3_add(v3_add(g->mesh->points[face[0]], g->mesh->points[face[1]]), g->mesh->points[face[2]]);
+  const laves__vec3 centroid = v3_sub(v3_scale(sum, 1.0 / 3), oracle->origin);
+  const double reach = 2 * frame->size * laves__layer_scale(layer, corner[0]);
+  laves__vec3 normal;
+  *hint = layer->hint[corner[0]];
+  if (layer->hold && frame->features) {
+    laves__hold hold[3];
+    laves__vec3 p[3];
+    for (int j = 0; j < 3; j++) {
+      hold[j] = layer->hold[corner[j]];
+      p[j] = layer->position[corner[j]];
+    }
+    const int32_t patch = laves__face_patch(frame, hold, p, *hint);
+    const laves__features *features = frame->features;
+    if (patch != LAVES__NO_FEATURE && features->project_patch(features->self, patch, centroid, reach, hint, foot, &normal))
+      return true;
+  }
+  return oracle->project(oracle->self, centroid, reach, hint, foot, &normal);
+}
+
+/* Tag and source of each boundary face. */
+static void tag_faces(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const tagging *g = user;
+  const laves__oracle *oracle = g->part->frame->oracle;
   for (size_t f = begin; f < end; f++) {
-    const int32_t *face = g->mesh->faces[f];
-    const laves__vec3 sum = v3_add(v3_add(g->mesh->points[face[0]], g->mesh->points[face[1]]), g->mesh->points[face[2]]);
-    const double reach = 2 * frame->size * laves__layer_scale(layer, g->owner[f]);
-    uint32_t hint = layer->hint[g->owner[f]];
-    laves__vec3 foot, normal;
-    g->mesh->face_tags[f] = 1;
-    if (oracle->project(oracle->self, v3_sub(v3_scale(sum, 1.0 / 3), oracle->origin), reach, &hint, &foot, &normal))
-      g->mesh->face_tags[f] = 1 + oracle->tag(oracle->self, foot, hint);
+    uint32_t hint;
+    laves__vec3 foot;
+    const bool found = find_foot(g, f, &foot, &hint);
+    if (g->mesh->face_tags) g->mesh->face_tags[f] = found ? 1 + oracle->tag(oracle->self, foot, hint) : 1;
+    if (g->mesh->face_sources) g->mesh->face_sources[f] = found ? oracle->source(oracle->self, foot, hint) : -1;
   }
 }
 
+/* Tags, and sources where they were asked for. */
 static laves_result write_tags(const laves__layer_part *part, laves_mesh *mesh, laves_error *error) {
   laves_context *context = part->lattice->context;
-  tagging g = {part, mesh, laves__alloc(context, mesh->face_count, sizeof *g.owner)};
-  if (!g.owner) return laves__fail_memory(context, error);
+  tagging g = {part, mesh, laves__alloc(context, mesh->face_count, sizeof *g.corner)};
+  if (!g.corner) return laves__fail_memory(context, error);
   size_t next = 0;
   for (size_t t = 0; t < part->layer->tet_count; t++)
-    for (int k = 0; k < 4; k++)
-      if (part->faces[t] >> k & 1) g.owner[next++] = part->layer->tet[t][laves__tet_face[k][0]];
+    for (int k = 0; k < 4; k++) {
+      if (!(part->faces[t] >> k & 1)) continue;
+      for (int j = 0; j < 3; j++) g.corner[next][j] = part->layer->tet[t][laves__tet_face[k][j]];
+      next++;
+    }
   const bool done = laves__parallel_for(context, "mesh", mesh->face_count, 64, tag_faces, &g);
-  laves__free(context, g.owner, mesh->face_count, sizeof *g.owner);
+  laves__free(context, g.corner, mesh->face_count, sizeof *g.corner);
   return done ? LAVES_OK : laves__fail_cancelled(error);
 }
 
@@ -180,7 +209,7 @@ laves_result laves__layer_part_write(const laves__layer_part *part, size_t first
   write_copies(part, mesh);
   write_corners(part, mesh);
   write_faces(part, mesh);
-  return mesh->face_tags ? write_tags(part, mesh, error) : LAVES_OK;
+  return mesh->face_tags || mesh->face_sources ? write_tags(part, mesh, error) : LAVES_OK;
 }
 
 void laves__layer_part_free(laves__layer_part *part) {

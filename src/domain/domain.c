@@ -138,15 +138,19 @@ void laves__project_many(const laves__oracle *oracle, size_t count, const laves_
   }
 }
 
+static void free_names(laves_context *context, char **names, int count) {
+  if (!names) return;
+  for (int i = 0; i < count; i++)
+    if (names[i]) laves__free(context, names[i], strlen(names[i]) + 1, 1);
+  laves__free(context, names, (size_t)count, sizeof *names);
+}
+
 void laves_domain_free(laves_domain *domain) {
   if (!domain) return;
   laves_context *context = domain->context;
   if (domain->oracle.free) domain->oracle.free(context, domain->oracle.self);
-  if (domain->tag_names) {
-    for (int i = 0; i < domain->info.tag_count; i++)
-      if (domain->tag_names[i]) laves__free(context, domain->tag_names[i], strlen(domain->tag_names[i]) + 1, 1);
-    laves__free(context, domain->tag_names, (size_t)domain->info.tag_count, sizeof *domain->tag_names);
-  }
+  free_names(context, domain->tag_names, domain->info.tag_count);
+  free_names(context, domain->region_names, domain->region_count);
   laves__free(context, domain, 1, sizeof *domain);
 }
 

@@ -235,6 +235,7 @@ laves__node laves__node_make(laves__expression *e, laves__op op, laves__node a, 
   double value[3] = {0, 0, 0};
   int constants = 0;
   for (int i = 0; i < operands; i++) constants += laves__node_is_constant(e, operand[i], &value[i]);
+  LAVES_ASSERT(op != LAVES__OP_TAG && op != LAVES__OP_REGION);
   if (operands && constants == operands) return laves__node_constant(e, laves__op_value(op, value[0], value[1], value[2]));
   if (op == LAVES__OP_NORM3 && constants) return spelled_norm3(e, operand);
   if (commutes(op)) { /* constants to the right, then by number */
@@ -297,6 +298,16 @@ laves__node laves__node_warp(laves__expression *e, laves__node body, const laves
     return refuse(e, &e->out_of_memory);
   e->warps[e->warp_count] = (laves__warp){{coordinate[0], coordinate[1], coordinate[2]}};
   return intern(e, (laves__node_data){.value = (double)e->warp_count++, .operand = {body, 0, 0}, .op = LAVES__OP_WARP});
+}
+
+laves__node laves__node_tag(laves__expression *e, laves__node a, uint32_t tag) {
+  if (a == LAVES__NO_NODE || is_op(e, a, LAVES__OP_CONSTANT) || is_op(e, a, LAVES__OP_TAG)) return a;
+  return intern(e, (laves__node_data){.value = tag, .operand = {a, 0, 0}, .op = LAVES__OP_TAG});
+}
+
+laves__node laves__node_region(laves__expression *e, laves__node a, uint32_t region) {
+  if (a == LAVES__NO_NODE || is_op(e, a, LAVES__OP_CONSTANT)) return a;
+  return intern(e, (laves__node_data){.value = region, .operand = {a, 0, 0}, .op = LAVES__OP_REGION});
 }
 
 /* ---- lowering: a depth-first walk with its own stack over pairs (node, frame) ---- */
@@ -436,6 +447,10 @@ static bool lower_step(lowering *w) {
       lowered = lowered_leaf(e, n.value, operand);
     else if (n.op == LAVES__OP_CONSTANT)
       lowered = v.node;
+    else if (n.op == LAVES__OP_TAG)
+      lowered = laves__node_tag(e, operand[0], (uint32_t)n.value);
+    else if (n.op == LAVES__OP_REGION)
+      lowered = laves__node_region(e, operand[0], (uint32_t)n.value);
     else
       lowered = laves__node_make(e, (laves__op)n.op, operand[0], operand[1], operand[2]);
   }

@@ -14,37 +14,39 @@
 #include "base/vec3.h"
 
 /* OP(name, operands). What they mean for arguments outside their range is told in elementary.h. */
-#define LAVES__OP_LIST(OP)                                                                            \
-  OP(CONSTANT, 0)                                                                                     \
-  OP(X, 0)                                                                                            \
-  OP(Y, 0)                                                                                            \
-  OP(Z, 0)                                                                                            \
-  OP(NEGATE, 1)                                                                                       \
-  OP(ABS, 1)                                                                                          \
-  OP(SQUARE, 1)                                                                                       \
-  OP(SQRT, 1)                                                                                         \
-  OP(SIN, 1)                                                                                          \
-  OP(COS, 1)                                                                                          \
-  OP(TAN, 1)                                                                                          \
-  OP(ASIN, 1)                                                                                         \
-  OP(ACOS, 1)                                                                                         \
-  OP(EXP, 1)                                                                                          \
-  OP(LOG, 1)                                                                                          \
-  OP(FLOOR, 1)                                                                                        \
-  OP(ADD, 2)                                                                                          \
-  OP(SUB, 2)                                                                                          \
-  OP(MUL, 2)                                                                                          \
-  OP(DIV, 2)                                                                                          \
-  OP(MIN, 2)                                                                                          \
-  OP(MAX, 2)                                                                                          \
-  OP(POW, 2)                                                                                          \
-  OP(ATAN2, 2)                                                                                        \
-  OP(MOD, 2)                                                                                          \
-  OP(NORM2, 2)  /* sqrt(a^2 + b^2) */                                                                 \
-  OP(NORM3, 3)  /* sqrt(a^2 + b^2 + c^2) */                                                           \
-  OP(LEAF, 3)   /* the oracle number `value`, evaluated at input coordinates (a, b, c) */             \
-  OP(AFFINE, 1) /* a, with x, y, z replaced by those of matrix number `value`; gone after lowering */ \
-  OP(WARP, 1)   /* a, with x, y, z replaced by the expressions of warp number `value`; gone after lowering */
+#define LAVES__OP_LIST(OP)                                                                                    \
+  OP(CONSTANT, 0)                                                                                             \
+  OP(X, 0)                                                                                                    \
+  OP(Y, 0)                                                                                                    \
+  OP(Z, 0)                                                                                                    \
+  OP(NEGATE, 1)                                                                                               \
+  OP(ABS, 1)                                                                                                  \
+  OP(SQUARE, 1)                                                                                               \
+  OP(SQRT, 1)                                                                                                 \
+  OP(SIN, 1)                                                                                                  \
+  OP(COS, 1)                                                                                                  \
+  OP(TAN, 1)                                                                                                  \
+  OP(ASIN, 1)                                                                                                 \
+  OP(ACOS, 1)                                                                                                 \
+  OP(EXP, 1)                                                                                                  \
+  OP(LOG, 1)                                                                                                  \
+  OP(FLOOR, 1)                                                                                                \
+  OP(ADD, 2)                                                                                                  \
+  OP(SUB, 2)                                                                                                  \
+  OP(MUL, 2)                                                                                                  \
+  OP(DIV, 2)                                                                                                  \
+  OP(MIN, 2)                                                                                                  \
+  OP(MAX, 2)                                                                                                  \
+  OP(POW, 2)                                                                                                  \
+  OP(ATAN2, 2)                                                                                                \
+  OP(MOD, 2)                                                                                                  \
+  OP(NORM2, 2)  /* sqrt(a^2 + b^2) */                                                                         \
+  OP(NORM3, 3)  /* sqrt(a^2 + b^2 + c^2) */                                                                   \
+  OP(LEAF, 3)   /* the oracle number `value`, evaluated at input coordinates (a, b, c) */                     \
+  OP(AFFINE, 1) /* a, with x, y, z replaced by those of matrix number `value`; gone after lowering */         \
+  OP(WARP, 1)   /* a, with x, y, z replaced by the expressions of warp number `value`; gone after lowering */ \
+  OP(TAG, 1)    /* a, the surface of which is named `value`; tapes keep it beside their instructions */       \
+  OP(REGION, 1) /* a, the inside of which is named `value`; the same */
 
 typedef enum laves__op {
 #define LAVES__OP_ENUM(name, operands) LAVES__OP_##name,
@@ -101,6 +103,10 @@ laves__node laves__node_make(laves__expression *e, laves__op op, laves__node a, 
 laves__node laves__node_leaf(laves__expression *e, uint32_t index);
 /* body(A p): coordinates are mapped by A before body sees them. To move a solid by T, map by the inverse of T. */
 laves__node laves__node_affine(laves__expression *e, laves__node body, const laves__affine *map);
+/* a, named. What has a name keeps it, and constants have no surface: these come back as they are. */
+laves__node laves__node_tag(laves__expression *e, laves__node a, uint32_t tag);
+/* The same for its inside; it may have several names. */
+laves__node laves__node_region(laves__expression *e, laves__node a, uint32_t region);
 laves__node laves__node_warp(laves__expression *e, laves__node body, const laves__node coordinate[3]);
 
 bool laves__node_is_constant(const laves__expression *e, laves__node a, double *value);

@@ -15,6 +15,7 @@ typedef struct laves__frame {
   laves__vec3 centre;                     /* local coordinates of the lattice's zero point */
   laves__mat3 rotation;
   double size;
+  bool face_sources; /* boundary faces of the mesh shall know the nearest face of the input, as laves_options tells */
 } laves__frame;
 
 laves__vec3 laves__frame_to_local(const laves__frame *frame, laves__vec3 lattice);

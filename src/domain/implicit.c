@@ -159,6 +159,25 @@ static void free_implicit(laves_context *context, void *self) {
   laves__free(context, s, 1, sizeof *s);
 }
 
+/* Two parts of the surface that are nearer to one another than this share of the diagonal are in one place: far more than the
+ * rounding of values, far less than what a mesh resolves. */
+static const double tag_tolerance = 1e-9;
+
+static int32_t tag(const void *self, laves__vec3 foot, uint32_t hint) {
+  const implicit *s = self;
+  (void)hint;
+  const double slope = v3_norm(laves__tape_gradient(&s->tape, foot).gradient);
+  const double tolerance = tag_tolerance * s->diagonal * (isfinite(slope) ? slope : 1);
+  const laves__leaf_tags leaf_tags = {s->model.leaf_tag_first, s->model.leaf_tags};
+  const int32_t found = laves__tape_tag(&s->tape, &leaf_tags, foot, tolerance);
+  return found == LAVES__NO_TAG ? 0 : found;
+}
+
+static int32_t region(const void *self, laves__vec3 point) {
+  const int32_t found = laves__tape_region_at(&((const implicit *)self)->tape, point);
+  return found == LAVES__NO_TAG ? 0 : found;
+}
+
 /* ---- samples: where cells of a grid meet the surface ---- */
 
 typedef struct sampler {
@@ -249,6 +268,27 @@ static laves_result copy_leaves(implicit *s, laves_context *context, laves_error
   return LAVES_OK;
 }
 
+/* Takes the names out of a list, in an array of just their number. */
+static bool take_names(laves_context *context, laves__tag_list *list, char ***names, int *count) {
+  if (list->count == 0) return true;
+  char **fitted = laves__realloc(context, list->names, list->capacity, list->count, sizeof *list->names);
+  if (!fitted) return false;
+  *names = fitted;
+  *count = (int)list->count;
+  list->names = NULL;
+  list->count = list->capacity = 0;
+  return true;
+}
+
+static laves_result fill_names(laves_domain *domain, implicit *s, laves_error *error) {
+  if (!take_names(domain->context, &s->model.names, &domain->tag_names, &domain->info.tag_count) ||
+      !take_names(domain->context, &s->model.regions, &domain->region_names, &domain->region_count))
+    return laves__fail_memory(domain->context, error);
+  if (domain->info.tag_count > 0) domain->oracle.tag = tag;
+  if (s->tape.region_count > 0) domain->oracle.region = region;
+  return LAVES_OK;
+}
+
 static void fill_domain(laves_domain *domain, implicit *s, laves__box3 box, laves__vec3 origin, bool is_expression) {
   const laves__shape *shape = &s->model.shape;
   domain->oracle = (laves__oracle){.self = s,
@@ -294,5 +334,5 @@ laves_result laves__implicit_build(laves_context *context, const char *text, siz
   s->is_distance = s->model.shape.exact;
   laves__expression_free(&s->model.expression);
   fill_domain(domain, s, box, origin, is_expression);
-  return LAVES_OK;
+  return fill_names(domain, s, error); /* the domain owns s now, and frees it */
 }

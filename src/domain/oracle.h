@@ -51,6 +51,13 @@ typedef struct laves__oracle {
   /* Tag of the surface at a foot given by `project` and its hint; NULL: no tags. */
   int32_t (*tag)(const void *self, laves__vec3 foot, uint32_t hint);
 
+  /* The same for the face of the input file, from 0, that the foot lies on; -1: on none (in a hole that was closed).
+   * NULL: the domain is not made of faces. */
+  int32_t (*source)(const void *self, laves__vec3 foot, uint32_t hint);
+
+  /* The named region that a point inside is in; NULL: no regions are named. */
+  int32_t (*region)(const void *self, laves__vec3 point);
+
   /* Deterministic samples of the surface, spaced by about `spacing`, at most `capacity` of them into points; returns
    * how many there are. NULL: not available. */
   size_t (*sample)(const void *self, double spacing, laves__vec3 *points, size_t capacity);
@@ -85,6 +92,8 @@ struct laves_domain {
   laves_domain_info info; /* in input coordinates */
   char format[48];
   char **tag_names; /* info.tag_count of them, each allocated with its length + 1 */
+  char **region_names;
+  int region_count;
 };
 
 /* Makers, one file each; they fill oracle, info, format and tags of a zeroed domain. */

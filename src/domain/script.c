@@ -289,9 +289,18 @@ laves_result laves__script_run_size(laves_context *context, const char *text, si
   return run_job(context, &work, name, folder, model, error);
 }
 
+int32_t laves__model_name(laves_context *context, laves__tag_list *list, const char *rest, const char *name, size_t length) {
+  if (list->count == 0 && !laves__tag_list_start(context, list, rest, strlen(rest), 0, "")) return -1;
+  return laves__tag_list_start(context, list, name, length, 0, "") ? list->current : -1;
+}
+
 void laves__model_free(laves_context *context, laves__model *model) {
   for (size_t i = 0; i < model->leaf_count; i++) laves_domain_free(model->leaves[i]);
   laves__free(context, model->leaves, model->leaf_capacity, sizeof *model->leaves);
+  laves__tag_list_free(context, &model->names);
+  laves__tag_list_free(context, &model->regions);
+  laves__free(context, model->leaf_tag_first, model->leaf_first_capacity, sizeof *model->leaf_tag_first);
+  laves__free(context, model->leaf_tags, model->leaf_tag_capacity, sizeof *model->leaf_tags);
   laves__expression_free(&model->expression);
   *model = (laves__model){0};
 }

@@ -4,6 +4,7 @@
 
 #include "domain/oracle.h"
 #include "domain/shape.h"
+#include "io/tag_list.h"
 
 struct lua_State;
 
@@ -13,11 +14,20 @@ typedef struct laves__model {
   laves__shape shape;    /* the solid; its node is in `expression` */
   laves_domain **leaves; /* surfaces that LEAF nodes number */
   size_t leaf_count, leaf_capacity;
+  laves__tag_list names;    /* of parts of the surface; the first is that of all that has no other. Empty: nothing is named */
+  laves__tag_list regions;  /* the same for the inside */
+  uint32_t *leaf_tag_first; /* [leaf_count + 1] or NULL: where the names of each leaf's own parts begin in ... */
+  size_t leaf_first_capacity;
+  int32_t *leaf_tags; /* ... this list */
+  size_t leaf_tag_count, leaf_tag_capacity;
 } laves__model;
 
 /* Arguments as of laves__implicit_build(). The model is set up here; free it in any case. */
 laves_result laves__script_run(laves_context *context, const char *text, size_t length, bool is_expression, const char *name,
                                const char *folder, laves__model *model, laves_error *error);
+/* The number of a name in one of the model's lists, whether new or known; negative: memory is short. The list's first name is
+ * `rest`. */
+int32_t laves__model_name(laves_context *context, laves__tag_list *list, const char *rest, const char *name, size_t length);
 void laves__model_free(laves_context *context, laves__model *model);
 
 /* The same for a size of elements: the chunk returns a number or a field of x, y, z and `d`, the depth below the surface.

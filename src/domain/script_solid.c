@@ -2,6 +2,8 @@
 #include <lauxlib.h>
 #include <lua.h>
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "domain/elementary.h"
 #include "domain/script.h"
@@ -220,6 +222,47 @@ static int warp(lua_State *L) {
   return push(L, laves__shape_of_node(laves__node_warp(store(L), a.node, to)));
 }
 
+/* ---- names ---- */
+
+/* What no part of the surface is named. */
+static const char rest_of_surface[] = "boundary";
+
+/* The most bytes of a name: what meshes hold. */
+enum { NAME_MAX_BYTES = 99 };
+
+static int out_of_memory(lua_State *L) {
+  laves__script_of(L)->over_memory = true;
+  return luaL_error(L, "out of memory");
+}
+
+typedef struct naming {
+  const char *name, *rest; /* of the function; of what gets no name */
+  bool inside;             /* else the surface */
+} naming;
+
+static const naming namings[] = {{"tag", rest_of_surface, false}, {"region", "solid", true}};
+
+/* tag("name", solid), or solid:tag("name"); the same for region. */
+static int name_solid(lua_State *L) {
+  const naming *n = &namings[lua_tointeger(L, lua_upvalueindex(1))];
+  laves__script *script = laves__script_of(L);
+  laves__model *model = script->model;
+  const int name_at = lua_type(L, 1) == LUA_TSTRING ? 1 : 2;
+  size_t length = 0;
+  if (lua_type(L, name_at) != LUA_TSTRING)
+    return luaL_error(L, "%s: expected a name in quotes and a solid, not %s", n->name, laves__script_type(L, name_at));
+  const char *name = lua_tolstring(L, name_at, &length);
+  const laves__shape a = laves__script_solid(L, 3 - name_at, n->name);
+  if (length == 0 || length > NAME_MAX_BYTES || strlen(name) != length)
+    return luaL_error(L, "%s: a name has 1 to %d bytes, none of them zero", n->name, (int)NAME_MAX_BYTES);
+  laves__tag_list *list = n->inside ? &model->regions : &model->names;
+  const int32_t number = laves__model_name(script->context, list, n->rest, name, length);
+  if (number < 0) return out_of_memory(L);
+  laves__shape named = a;
+  named.node = (n->inside ? laves__node_region : laves__node_tag)(store(L), a.node, (uint32_t)number);
+  return push(L, named);
+}
+
 /* ---- surface files ---- */
 
 /* The path as it stands, or within the script's folder when that is known; pushed on the stack. */
@@ -240,6 +283,37 @@ static laves_result read_surface(laves_context *context, const char *path, laves
   return result == LAVES_OK ? laves__surface_build(context, &input, domain, error) : result;
 }
 
+/* The path's last part without its extension. */
+static const char *stem_of(const char *path, int *length) {
+  const char *slash = strrchr(path, '/'), *stem = slash ? slash + 1 : path, *dot = strrchr(stem, '.');
+  *length = dot && dot > stem ? (int)(dot - stem) : (int)strlen(stem);
+  return stem;
+}
+
+/* A file of several named parts gives their names to the whole: "file/part". */
+static bool name_parts(laves_context *context, laves__model *model, const laves_domain *leaf, const char *path) {
+  const size_t count = model->leaf_count;
+  const bool first = model->leaf_tag_first == NULL;
+  if (!laves__grow(context, &model->leaf_tag_first, &model->leaf_first_capacity, count + 1, sizeof *model->leaf_tag_first))
+    return false;
+  for (size_t i = 0; first && i < count; i++) model->leaf_tag_first[i] = 0; /* of a leaf that is no file */
+  model->leaf_tag_first[count] = (uint32_t)model->leaf_tag_count;
+  if (leaf->info.tag_count < 2) return true;
+  const size_t needed = model->leaf_tag_count + (size_t)leaf->info.tag_count;
+  if (!laves__grow(context, &model->leaf_tags, &model->leaf_tag_capacity, needed, sizeof *model->leaf_tags)) return false;
+  int stem_length;
+  const char *stem = stem_of(path, &stem_length);
+  for (int i = 0; i < leaf->info.tag_count; i++) {
+    char name[NAME_MAX_BYTES + 1];
+    snprintf(name, sizeof name, "%.*s/%s", stem_length, stem, leaf->tag_names[i]);
+    const int32_t number = laves__model_name(context, &model->names, rest_of_surface, name, strlen(name));
+    if (number < 0) return false;
+    model->leaf_tags[model->leaf_tag_count++] = number;
+  }
+  model->leaf_tag_first[count] = (uint32_t)model->leaf_tag_count;
+  return true;
+}
+
 /* surface("part.stl"). The model owns the domain from the start, so an error raised later loses nothing. */
 static int surface(lua_State *L) {
   laves__script *script = laves__script_of(L);
@@ -252,10 +326,7 @@ static int surface(lua_State *L) {
   laves_domain *domain = NULL;
   if (laves__grow(script->context, &model->leaves, &model->leaf_capacity, model->leaf_count + 1, sizeof *model->leaves))
     domain = laves__alloc_zeroed(script->context, 1, sizeof *domain);
-  if (!domain) {
-    script->over_memory = true;
-    return luaL_error(L, "out of memory");
-  }
+  if (!domain) return out_of_memory(L);
   domain->context = script->context;
   model->leaves[model->leaf_count++] = domain;
   laves_error error;
@@ -264,6 +335,7 @@ static int surface(lua_State *L) {
   script->over_memory |= result == LAVES_ERROR_MEMORY;
   script->cancelled |= result == LAVES_ERROR_CANCELLED;
   if (result != LAVES_OK) return luaL_error(L, "surface: %s", error.text);
+  if (!name_parts(script->context, model, domain, path)) return out_of_memory(L);
   const laves__oracle *o = &domain->oracle;
   laves__shape s = laves__shape_of_node(laves__node_leaf(store(L), (uint32_t)model->leaf_count - 1));
   s.box = (laves__box3){v3_add(o->bounds.lower, o->origin), v3_add(o->bounds.upper, o->origin)};
@@ -301,6 +373,11 @@ void laves__script_add_solids(lua_State *L) {
     lua_pushinteger(L, (lua_Integer)i);
     lua_pushcclosure(L, combine, 1);
     lua_setfield(L, -2, combinations[i].name);
+  }
+  for (size_t i = 0; i < LAVES__COUNT_OF(namings); i++) {
+    lua_pushinteger(L, (lua_Integer)i);
+    lua_pushcclosure(L, name_solid, 1);
+    lua_setfield(L, -2, namings[i].name);
   }
   for (lua_pushnil(L); lua_next(L, -2);) {
     lua_pushvalue(L, -2);

@@ -41,24 +41,29 @@ static laves__vec3 choose_origin(laves__box3 b) {
   return v3(fabs(c.x) > diagonal ? c.x : 0, fabs(c.y) > diagonal ? c.y : 0, fabs(c.z) > diagonal ? c.z : 0);
 }
 
-/* Faces and tags change to the order of the tree; across and normals are not made yet. */
+/* Faces, tags and sources change to the order of the tree; across and normals are not made yet. */
 static bool reorder(laves__surface *s, const uint32_t *order) {
   const size_t count = s->face_count;
   uint32_t(*faces)[3] = laves__alloc(s->context, s->face_capacity, sizeof *faces);
   int32_t *tags = s->tags ? laves__alloc(s->context, s->face_capacity, sizeof *tags) : NULL;
-  if (!faces || (s->tags && !tags)) {
+  uint32_t *sources = laves__alloc(s->context, s->face_capacity, sizeof *sources);
+  if (!faces || (s->tags && !tags) || !sources) {
     laves__free(s->context, faces, s->face_capacity, sizeof *faces);
     laves__free(s->context, tags, s->face_capacity, sizeof *tags);
+    laves__free(s->context, sources, s->face_capacity, sizeof *sources);
     return false;
   }
   for (size_t i = 0; i < count; i++) {
     memcpy(faces[i], s->faces[order[i]], sizeof *faces);
     if (tags) tags[i] = s->tags[order[i]];
+    sources[i] = s->sources[order[i]];
   }
   laves__free(s->context, s->faces, s->face_capacity, sizeof *s->faces);
   laves__free(s->context, s->tags, s->face_capacity, sizeof *s->tags);
+  laves__free(s->context, s->sources, s->face_capacity, sizeof *s->sources);
   s->faces = faces;
   s->tags = tags;
+  s->sources = sources;
   return true;
 }
 
@@ -151,6 +156,7 @@ static bool leave_out(laves__surface *s, const bool *keep, laves__crossings *c) 
     if (!keep[f]) continue;
     memmove(s->faces[s->face_count], s->faces[f], sizeof *s->faces);
     if (s->tags) s->tags[s->face_count] = s->tags[f];
+    s->sources[s->face_count] = s->sources[f];
     s->winding_slot[s->face_count++] = f;
   }
   s->all = s->bvh;
@@ -293,6 +299,8 @@ static bool solve(laves__surface *s, laves_domain_info *info) {
     if (!renew_topology(s, info)) goto clean_up;
   }
   laves__surface_measure(s, &info->volume, &info->area);
+  if ((s->rim_count > 0 || crossings.count > 0 || info->component_count > 1 || any_doubt(s)) && !laves__surface_find_parts(s))
+    goto clean_up;
   if (s->rim_count > 0) {
     if (!solve_open(s, &crossings, info)) goto clean_up;
   } else if (crossings.count > 0 || info->component_count > 1 || any_doubt(s)) {

@@ -9,6 +9,7 @@
  *   surface_patch.c     which triangles bound the union of what is enclosed
  *   surface_mend.c      cracks, repeats and directions of surfaces that are not closed
  *   surface_open.c      what stays open: {winding number = 1/2}
+ *   surface_part.c      closed parts, which can be regions of the mesh
  *   surface_sample.c    samples, thin places
  *   surface_oracle.c    sign, distance, projection
  *
@@ -135,6 +136,7 @@ typedef struct laves__surface {
   size_t point_count, point_capacity;
   uint32_t (*faces)[3]; /* in the order of the tree's slots */
   int32_t *tags;        /* [face_capacity], NULL: none */
+  uint32_t *sources;    /* [face_capacity] the face of the file that each is a part of, from 0 */
   size_t face_count, face_capacity;
   uint32_t *across;           /* [3 face_capacity] half-edge (3 face + corner where it starts) on the other side, or NONE */
   laves__vec3 *face_normals;  /* [face_capacity] of length one; zero for faces without area */
@@ -151,6 +153,11 @@ typedef struct laves__surface {
   laves__segment *segments;
   uint32_t *segment_starts; /* [face_capacity + 1] */
   size_t segment_count;
+  /* Parts, as laves__surface_find_parts() tells; NULL: it is all one. */
+  uint32_t *part; /* [part_capacity] of each face, in the order of the tree behind `winding` */
+  size_t part_capacity, part_count;
+  int32_t *part_tag; /* [part_count] the tag that all of its faces and no others have, or -1 */
+  bool *part_closed; /* [part_count] */
   /* Half-edges of edges not used as often forwards as backwards, each once for every use too many. */
   uint32_t *rim;
   size_t rim_count, rim_capacity;
@@ -163,7 +170,7 @@ typedef struct laves__surface {
 
 /* ---- weld ---- */
 
-/* Fills points, faces and tags from input (local coordinates); counts repeated and unused points, degenerate and
+/* Fills points, faces, tags and sources from input (local coordinates); counts repeated and unused points, degenerate and
  * repeated faces. False when memory is short. */
 bool laves__surface_weld(laves__surface *s, const laves__surface_input *input, laves__vec3 origin, laves_domain_info *info);
 
@@ -176,6 +183,14 @@ bool laves__surface_drop_repeats(laves__surface *s, bool any_direction, laves_do
  * and components (info may be a scratch copy). False when memory is short. */
 bool laves__surface_topology(laves__surface *s, laves_domain_info *info);
 bool laves__surface_normals(laves__surface *s);
+
+/* Calls fn once for every edge with all its half-edges, ascending; fn may change the list. False when memory is short. */
+typedef struct laves__edge_use {
+  uint32_t other; /* the greater point */
+  uint32_t half;  /* 3 face + corner where it starts */
+} laves__edge_use;
+typedef void laves__edge_fn(void *user, laves__edge_use *uses, size_t count);
+bool laves__surface_each_edge(const laves__surface *s, laves__edge_fn *fn, void *user);
 /* Signed volume (meaningful for closed surfaces) and area. */
 void laves__surface_measure(const laves__surface *s, double *volume, double *area);
 
@@ -216,6 +231,27 @@ double laves__surface_mean_winding(const laves__surface *s, uint32_t slot);
  * bool[face_count]. False when memory is short. */
 bool laves__surface_find_walls(const laves__surface *s, bool *keep, bool *inverted);
 bool laves__surface_find_segments(laves__surface *s, const laves__crossings *c);
+
+/* ---- parts ---- */
+
+/* Finds which part each face belongs to: the faces of one tag, where several tags are given and these are closed by themselves;
+ * else what hangs together over edges. Where more than two faces meet in an edge, those go together that have the inside of one
+ * solid between them, so that solids which touch stay apart. Parts are numbered as the file gives them. False when memory is
+ * short. */
+bool laves__surface_find_parts(laves__surface *s);
+
+/* Closed parts with an inside, to be asked which of them a point is in. */
+typedef struct laves__parts laves__parts;
+/* NULL when memory is short. s must outlive the result. */
+laves__parts *laves__parts_create(const laves__surface *s);
+void laves__parts_free(laves__parts *parts);
+size_t laves__parts_count(const laves__parts *parts);
+/* The tag that stands for the part alone, or -1. */
+int32_t laves__parts_tag(const laves__parts *parts, size_t part);
+/* The part that holds p, of several the one of least volume; -1: none. */
+int32_t laves__parts_at(const laves__parts *parts, laves__vec3 p);
+/* Whether any triangle of the surface, of walls inside the solid as well, is within the distance of p. */
+bool laves__parts_touch(const laves__parts *parts, laves__vec3 p, double distance);
 
 /* ---- open surfaces ---- */
 

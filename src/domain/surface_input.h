@@ -13,6 +13,8 @@ typedef struct laves__surface_input {
   int32_t *tags;    /* [triangle_capacity] index into tag_names for each triangle, or NULL */
   char **tag_names; /* tag_count of them, each allocated with its length + 1; NULL: none */
   int tag_count;
+  uint32_t
+      *sources; /* [triangle_capacity] the face of the file that each triangle is a part of, from 0; NULL: all are themselves */
   char format[48]; /* "STL (binary)", ... */
 } laves__surface_input;
 

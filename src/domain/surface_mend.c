@@ -66,7 +66,7 @@ static bool merge_points(const laves__surface *s, double tolerance, uint32_t *nu
   return done;
 }
 
-/* A surface of its own faces and tags over s's points, with points numbered anew; free with trial_free(). */
+/* A surface of its own faces, tags and sources over s's points, with points numbered anew; free with trial_free(). */
 static bool trial_create(const laves__surface *s, const uint32_t *number, laves__surface *t) {
   *t = (laves__surface){.context = s->context,
                         .points = s->points,
@@ -75,11 +75,13 @@ static bool trial_create(const laves__surface *s, const uint32_t *number, laves_
                         .face_capacity = s->face_capacity};
   t->faces = laves__alloc(s->context, t->face_capacity, sizeof *t->faces);
   if (s->tags) t->tags = laves__alloc(s->context, t->face_capacity, sizeof *t->tags);
-  if (!t->faces || (s->tags && !t->tags)) return false;
+  t->sources = laves__alloc(s->context, t->face_capacity, sizeof *t->sources);
+  if (!t->faces || (s->tags && !t->tags) || !t->sources) return false;
   for (size_t f = 0; f < s->face_count; f++) {
     const uint32_t a = number[s->faces[f][0]], b = number[s->faces[f][1]], c = number[s->faces[f][2]];
     if (a == b || b == c || c == a) continue;
     if (t->tags) t->tags[t->face_count] = s->tags[f];
+    t->sources[t->face_count] = s->sources[f];
     uint32_t *face = t->faces[t->face_count++];
     face[0] = a;
     face[1] = b;
@@ -93,6 +95,7 @@ static void trial_free(laves__surface *t) {
   laves_context *context = t->context;
   laves__free(context, t->faces, t->face_capacity, sizeof *t->faces);
   laves__free(context, t->tags, t->face_capacity, sizeof *t->tags);
+  laves__free(context, t->sources, t->face_capacity, sizeof *t->sources);
   laves__free(context, t->across, 3 * t->face_capacity, sizeof *t->across);
   laves__free(context, t->doubtful_points, t->point_capacity, sizeof *t->doubtful_points);
   laves__free(context, t->rim, t->rim_capacity, sizeof *t->rim);
@@ -226,6 +229,7 @@ bool laves__surface_mend(laves__surface *s, size_t open_edges) {
   if (done) {
     memcpy(s->faces, best.faces, best.face_count * sizeof *s->faces);
     if (s->tags) memcpy(s->tags, best.tags, best.face_count * sizeof *s->tags);
+    memcpy(s->sources, best.sources, best.face_count * sizeof *s->sources);
     s->face_count = best.face_count;
     done = laves__surface_topology(s, &scratch) && agree_on_directions(s);
   }

@@ -277,6 +277,12 @@ static int32_t tag(const void *self, laves__vec3 foot, uint32_t hint) {
   return s->tags && hint < s->face_count ? s->tags[hint] : 0;
 }
 
+static int32_t source(const void *self, laves__vec3 foot, uint32_t hint) {
+  const laves__surface *s = self;
+  (void)foot;
+  return hint < s->face_count ? (int32_t)s->sources[hint] : -1;
+}
+
 static void flat_face(const void *self, size_t face, laves__vec3 corners[3]) {
   const laves__triangle *t = &((const laves__surface *)self)->bvh.triangles[face];
   corners[0] = t->a;
@@ -291,6 +297,7 @@ void laves__surface_oracle(laves__surface *s, laves__oracle *oracle) {
   oracle->project = project;
   oracle->side = side;
   oracle->tag = s->tags ? tag : NULL;
+  oracle->source = source;
   oracle->sample = laves__surface_sample;
   oracle->surface = s;
   if (!s->open) oracle->find_features = laves__features_of_surface;
@@ -309,6 +316,10 @@ void laves__surface_free(laves_context *context, void *self) {
   laves__free(context, s->points, s->point_capacity, sizeof *s->points);
   laves__free(context, s->faces, s->face_capacity, sizeof *s->faces);
   laves__free(context, s->tags, s->face_capacity, sizeof *s->tags);
+  laves__free(context, s->sources, s->face_capacity, sizeof *s->sources);
+  laves__free(context, s->part, s->part_capacity, sizeof *s->part);
+  laves__free(context, s->part_tag, s->part_count, sizeof *s->part_tag);
+  laves__free(context, s->part_closed, s->part_count, sizeof *s->part_closed);
   laves__free(context, s->across, 3 * s->face_capacity, sizeof *s->across);
   laves__winding_free(context, &s->winding);
   laves__free(context, s->rim_lengths, s->rim_tree.node_capacity, sizeof *s->rim_lengths);

@@ -21,10 +21,7 @@ static void note(laves_domain_info *info, laves_defect defect, laves__vec3 place
 }
 
 /* A use of an edge, beside its lesser point. */
-typedef struct use {
-  uint32_t other; /* the greater point */
-  uint32_t half;  /* 3 face + corner where it starts */
-} use;
+typedef laves__edge_use use;
 
 static int compare_uses(const void *a, const void *b) {
   const use *x = a, *y = b;
@@ -227,6 +224,27 @@ clean_up:
   laves__free(s->context, starts, starts_count, sizeof *starts);
   laves__free(s->context, uses, half_count, sizeof *uses);
   laves__free(s->context, parent, s->face_count, sizeof *parent);
+  return done;
+}
+
+bool laves__surface_each_edge(const laves__surface *s, laves__edge_fn *fn, void *user) {
+  const size_t starts_count = s->point_count + 1, half_count = 3 * s->face_count;
+  uint32_t *starts = laves__alloc_zeroed(s->context, starts_count, sizeof *starts);
+  use *uses = laves__alloc(s->context, half_count, sizeof *uses);
+  const bool done = starts && uses;
+  if (done) list_uses(s, starts, uses);
+  for (size_t p = 0; done && p < s->point_count; p++) {
+    use *list = uses + starts[p];
+    const size_t count = starts[p + 1] - starts[p];
+    sort_uses(list, count);
+    for (size_t begin = 0, end; begin < count; begin = end) {
+      for (end = begin + 1; end < count && list[end].other == list[begin].other; end++) {
+      }
+      fn(user, list + begin, end - begin);
+    }
+  }
+  laves__free(s->context, starts, starts_count, sizeof *starts);
+  laves__free(s->context, uses, half_count, sizeof *uses);
   return done;
 }
 

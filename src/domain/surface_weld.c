@@ -89,6 +89,7 @@ static void copy_faces(laves__surface *s, const laves__surface_input *input, con
     face[1] = b;
     face[2] = c;
     if (s->tags) s->tags[s->face_count] = input->tags[f];
+    s->sources[s->face_count] = input->sources ? input->sources[f] : (uint32_t)f;
     s->face_count++;
   }
 }
@@ -164,6 +165,7 @@ bool laves__surface_drop_repeats(laves__surface *s, bool any_direction, laves_do
       }
       memmove(s->faces[kept], s->faces[f], sizeof *s->faces);
       if (s->tags) s->tags[kept] = s->tags[f];
+      s->sources[kept] = s->sources[f];
       kept++;
     }
     s->face_count = kept;
@@ -183,7 +185,8 @@ bool laves__surface_weld(laves__surface *s, const laves__surface_input *input, l
   if (s->points) s->point_capacity = count;
   s->faces = laves__alloc(context, input->triangle_count, sizeof *s->faces);
   if (s->faces) s->face_capacity = input->triangle_count;
-  if (!points || !used || !first || !s->points || !s->faces) goto clean_up;
+  s->sources = laves__alloc(context, s->face_capacity, sizeof *s->sources);
+  if (!points || !used || !first || !s->points || !s->faces || !s->sources) goto clean_up;
   if (input->tags) {
     s->tags = laves__alloc(context, input->triangle_count, sizeof *s->tags);
     if (!s->tags) goto clean_up;

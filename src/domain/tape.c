@@ -5,6 +5,8 @@
  * points as let all registers fit into a fixed block on the stack, at most BATCH; each instruction is one loop over it. */
 #include "domain/tape.h"
 
+#include <stdlib.h>
+
 #include "domain/elementary.h"
 #include "domain/wide.h"
 
@@ -19,10 +21,29 @@ typedef struct compiler {
   uint16_t *need;  /* [nodes] registers that evaluating it alone takes */
   uint16_t *reg;   /* [nodes] where its value is, or LAVES__OPERAND_CONSTANT: not yet computed */
   uint32_t *stack; /* [nodes + 1] */
+  uint32_t *made;  /* [nodes] instructions up to the one that computes it; undefined before */
   uint16_t free[LAVES__REGISTER_LIMIT];
   size_t free_count;
   laves__tape *tape;
 } compiler;
+
+static bool is_name(const laves__expression *e, laves__node a) {
+  return e->nodes[a].op == LAVES__OP_TAG || e->nodes[a].op == LAVES__OP_REGION;
+}
+
+/* Names stand beside the instructions: what is computed is what is named. */
+static laves__node plain(const laves__expression *e, laves__node a) {
+  while (is_name(e, a)) a = e->nodes[a].operand[0];
+  return a;
+}
+
+/* The innermost of the names of a surface. */
+static int32_t tag_of(const laves__expression *e, laves__node a) {
+  int32_t tag = LAVES__NO_TAG;
+  for (; is_name(e, a); a = e->nodes[a].operand[0])
+    if (e->nodes[a].op == LAVES__OP_TAG) tag = (int32_t)e->nodes[a].value;
+  return tag;
+}
 
 static bool is_constant(const laves__expression *e, laves__node a) { return e->nodes[a].op == LAVES__OP_CONSTANT; }
 static bool is_input(const laves__expression *e, laves__node a) {
@@ -37,14 +58,14 @@ static size_t count_uses(compiler *c, laves__node root) {
     if (!c->uses[i]) continue;
     const laves__node_data *n = &c->e->nodes[i];
     const int operands = laves__op_operands[n->op];
-    for (int k = 0; k < operands; k++) c->uses[n->operand[k]]++;
+    for (int k = 0; k < operands; k++) c->uses[plain(c->e, n->operand[k])]++;
     reachable += operands > 0;
   }
   for (size_t i = 0; i <= root; i++) {
     const laves__node_data *n = &c->e->nodes[i];
     uint16_t need = laves__op_operands[n->op] ? 1 : 0;
     for (int k = 0; k < laves__op_operands[n->op]; k++) {
-      const uint16_t other = c->need[n->operand[k]];
+      const uint16_t other = c->need[plain(c->e, n->operand[k])];
       need = (uint16_t)(other > need ? other : need + (other == need && other < UINT16_MAX));
     }
     c->need[i] = need;
@@ -65,7 +86,8 @@ static bool emit(compiler *c, laves__node a) {
   laves__instruction instruction = {.op = (uint16_t)n->op};
   const int operands = laves__op_operands[n->op];
   for (int k = 0; k < operands; k++) {
-    const laves__node b = n->operand[k];
+    const laves__node b = plain(c->e, n->operand[k]);
+    if (c->tape->tags) c->tape->tags[3 * c->tape->count + (size_t)k] = tag_of(c->e, n->operand[k]);
     instruction.operand[k] = is_input(c->e, b) ? (uint16_t)(c->e->nodes[b].op - LAVES__OP_X) : c->reg[b];
     if (is_constant(c->e, b)) {
       instruction.operand[k] = LAVES__OPERAND_CONSTANT;
@@ -73,13 +95,14 @@ static bool emit(compiler *c, laves__node a) {
     }
   }
   if (n->op == LAVES__OP_LEAF) instruction.leaf = (uint16_t)n->value;
-  for (int k = 0; k < operands; k++) release(c, n->operand[k]);
+  for (int k = 0; k < operands; k++) release(c, plain(c->e, n->operand[k]));
   if (c->free_count == 0) {
     if (c->tape->register_count == LAVES__REGISTER_LIMIT) return false;
     c->free[c->free_count++] = (uint16_t)c->tape->register_count++;
   }
   c->reg[a] = instruction.out = c->free[--c->free_count];
   c->tape->instructions[c->tape->count++] = instruction;
+  c->made[a] = (uint32_t)c->tape->count;
   return true;
 }
 
@@ -96,7 +119,7 @@ static bool schedule(compiler *c, laves__node root) {
     const laves__node_data *n = &c->e->nodes[a];
     laves__node next = LAVES__NO_NODE;
     for (int k = 0; k < laves__op_operands[n->op]; k++) {
-      const laves__node b = n->operand[k];
+      const laves__node b = plain(c->e, n->operand[k]);
       if (!is_computed(c, b) && (next == LAVES__NO_NODE || c->need[b] > c->need[next])) next = b;
     }
     if (next != LAVES__NO_NODE) {
@@ -123,11 +146,59 @@ static void emit_trivial(compiler *c, laves__node root) {
   tape->count = 2;
 }
 
+static bool any_op(const laves__expression *e, size_t nodes, laves__op op) {
+  for (size_t i = 0; i < nodes; i++)
+    if (e->nodes[i].op == (uint32_t)op) return true;
+  return false;
+}
+
+static int compare_regions(const void *a, const void *b) {
+  const laves__tape_region *x = a, *y = b;
+  if (x->after != y->after) return x->after < y->after ? -1 : 1;
+  return (x->region > y->region) - (x->region < y->region);
+}
+
+/* Lists the regions that can be reached from `root`, names included, once the tape stands. False when memory is short. */
+static bool list_regions(compiler *c, laves__node root) {
+  const laves__expression *e = c->e;
+  const size_t nodes = (size_t)root + 1;
+  laves__tape *tape = c->tape;
+  if (!any_op(e, nodes, LAVES__OP_REGION)) return true;
+  bool *reached = laves__alloc_zeroed(e->context, nodes, sizeof *reached);
+  if (!reached) return false;
+  reached[root] = true;
+  size_t count = 0;
+  for (size_t i = nodes; i-- > 0;) { /* operands have smaller numbers than their node */
+    const laves__node_data *n = &e->nodes[i];
+    for (int k = 0; reached[i] && k < laves__op_operands[n->op]; k++) reached[n->operand[k]] = true;
+    count += reached[i] && n->op == LAVES__OP_REGION;
+  }
+  if (count > 0) tape->regions = laves__alloc(e->context, count, sizeof *tape->regions);
+  const bool done = count == 0 || tape->regions;
+  for (size_t i = 0; done && i < nodes; i++) {
+    if (!reached[i] || e->nodes[i].op != LAVES__OP_REGION) continue;
+    const laves__node a = plain(e, (laves__node)i);
+    laves__tape_region r = {.region = (int32_t)e->nodes[i].value};
+    if (is_input(e, a)) {
+      r.operand = (uint16_t)(e->nodes[a].op - LAVES__OP_X);
+    } else {
+      r.operand = c->reg[a];
+      r.after = c->made[a];
+    }
+    tape->regions[tape->region_count++] = r;
+  }
+  if (tape->region_count > 0) qsort(tape->regions, tape->region_count, sizeof *tape->regions, compare_regions);
+  laves__free(e->context, reached, nodes, sizeof *reached);
+  return done;
+}
+
 laves_result laves__tape_build(const laves__expression *e, laves__node root, const laves__oracle *leaves, laves__tape *tape,
                                laves_error *error) {
   laves_context *context = e->context;
   const size_t nodes = (size_t)root + 1;
-  *tape = (laves__tape){.leaves = leaves, .register_count = 3};
+  *tape = (laves__tape){.leaves = leaves, .register_count = 3, .root_tag = tag_of(e, root)};
+  const laves__node named_root = root;
+  root = plain(e, root);
   laves_result result = LAVES_OK;
   size_t reachable = 0;
   compiler *c = laves__alloc_zeroed(context, 1, sizeof *c);
@@ -137,14 +208,19 @@ laves_result laves__tape_build(const laves__expression *e, laves__node root, con
   c->need = laves__alloc(context, nodes, sizeof *c->need);
   c->reg = laves__alloc(context, nodes, sizeof *c->reg);
   c->stack = laves__alloc(context, nodes + 1, sizeof *c->stack);
-  if (!c->uses || !c->need || !c->reg || !c->stack) {
+  c->made = laves__alloc(context, nodes, sizeof *c->made);
+  if (!c->uses || !c->need || !c->reg || !c->stack || !c->made) {
     result = laves__fail_memory(context, error);
     goto done;
   }
   for (size_t i = 0; i < nodes; i++) c->reg[i] = LAVES__OPERAND_CONSTANT;
   reachable = count_uses(c, root);
   tape->instructions = laves__alloc(context, reachable ? reachable : 2, sizeof *tape->instructions);
-  if (!tape->instructions) {
+  if (tape->instructions && reachable && any_op(e, nodes, LAVES__OP_TAG))
+    tape->tags = laves__alloc(context, 3 * reachable, sizeof *tape->tags);
+  if (!tape->instructions || (reachable && any_op(e, nodes, LAVES__OP_TAG) && !tape->tags)) {
+    laves__free(context, tape->instructions, reachable ? reachable : 2, sizeof *tape->instructions);
+    *tape = (laves__tape){.leaves = leaves};
     result = laves__fail_memory(context, error);
     goto done;
   }
@@ -155,9 +231,15 @@ laves_result laves__tape_build(const laves__expression *e, laves__node root, con
                          "the expression needs more than %d intermediate values at once; split the solid into simpler parts",
                          LAVES__REGISTER_LIMIT);
     laves__free(context, tape->instructions, reachable, sizeof *tape->instructions);
+    laves__free(context, tape->tags, 3 * reachable, sizeof *tape->tags);
     *tape = (laves__tape){.leaves = leaves};
   }
+  if (result == LAVES_OK && !list_regions(c, named_root)) {
+    laves__tape_free(context, tape);
+    result = laves__fail_memory(context, error);
+  }
 done:
+  laves__free(context, c->made, nodes, sizeof *c->made);
   laves__free(context, c->uses, nodes, sizeof *c->uses);
   laves__free(context, c->need, nodes, sizeof *c->need);
   laves__free(context, c->reg, nodes, sizeof *c->reg);
@@ -168,6 +250,8 @@ done:
 
 void laves__tape_free(laves_context *context, laves__tape *tape) {
   laves__free(context, tape->instructions, tape->count, sizeof *tape->instructions);
+  laves__free(context, tape->tags, 3 * tape->count, sizeof *tape->tags);
+  laves__free(context, tape->regions, tape->region_count, sizeof *tape->regions);
   *tape = (laves__tape){0};
 }
 

@@ -23,12 +23,25 @@ typedef struct laves__instruction {
   uint16_t leaf;
 } laves__instruction;
 
+/* The value that tells whether a point is in a region: negative inside. */
+typedef struct laves__tape_region {
+  uint32_t after; /* so many instructions */
+  uint16_t operand;
+  int32_t region;
+} laves__tape_region;
+
 typedef struct laves__tape {
   laves__instruction *instructions;
   size_t count;
   uint32_t register_count;     /* at least 3 */
   const laves__oracle *leaves; /* not owned; LEAF instructions index it */
+  int32_t *tags;    /* [3 count] the name on the way from each operand to its instruction, or LAVES__NO_TAG; NULL: none */
+  int32_t root_tag; /* the same behind the last instruction */
+  laves__tape_region *regions; /* [region_count] by ascending `after`, then region */
+  size_t region_count;
 } laves__tape;
+
+#define LAVES__NO_TAG (-1)
 
 typedef struct laves__interval {
   double lower, upper;
@@ -56,5 +69,18 @@ laves__interval laves__tape_interval(const laves__tape *tape, laves__box3 box, b
 laves__dual laves__tape_gradient(const laves__tape *tape, laves__vec3 point);
 /* The same at many points, with the same bits, several times as fast. */
 void laves__tape_gradients(const laves__tape *tape, size_t count, const laves__vec3 *points, laves__dual *duals);
+
+/* How the tags of leaves are called in the whole: tag t of leaf l is number[first[l] + t]; leaf l has first[l + 1] - first[l]. */
+typedef struct laves__leaf_tags {
+  const uint32_t *first;
+  const int32_t *number;
+} laves__leaf_tags;
+
+/* The name of the surface at one of its points, or LAVES__NO_TAG (tape_tag.c). Values that differ by less than `tolerance`
+ * count as equal. */
+int32_t laves__tape_tag(const laves__tape *tape, const laves__leaf_tags *leaf_tags, laves__vec3 point, double tolerance);
+
+/* The least of the regions that a point is in, or LAVES__NO_TAG (tape_region.c). */
+int32_t laves__tape_region_at(const laves__tape *tape, laves__vec3 point);
 
 #endif

@@ -127,6 +127,7 @@ void laves__mesh_input_free(laves__mesh_input *input) {
   laves__free(context, input->regions, input->region_capacity, sizeof *input->regions);
   laves__free(context, input->faces, input->face_capacity, sizeof *input->faces);
   laves__free(context, input->face_tags, input->face_tag_capacity, sizeof *input->face_tags);
+  laves__free(context, input->face_elements, input->face_element_capacity, sizeof *input->face_elements);
   laves__free(context, input->values.items, input->values.capacity, sizeof *input->values.items);
   laves__free(context, input->groups, input->group_capacity, sizeof *input->groups);
   memset(input, 0, sizeof *input);

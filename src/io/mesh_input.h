@@ -26,6 +26,9 @@ typedef struct laves__mesh_input {
   int32_t (*faces)[3]; /* triangles of the file, whether on the boundary or not */
   int32_t *face_tags;
   size_t face_count, face_capacity, face_tag_capacity;
+  bool polygons; /* wanted, as of a surface: quadrangles come as two triangles, and face_elements is filled (Gmsh only) */
+  int32_t *face_elements; /* [face_count] of which of the file's elements of a surface, from 0, each is a part */
+  size_t face_element_capacity;
   laves__group *groups;
   size_t group_count, group_capacity;
   laves__mesh_values values; /* read by VTU, Gmsh and .pos only */

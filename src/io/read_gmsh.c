@@ -22,6 +22,7 @@ static const uint8_t type_nodes[TYPE_MAX + 1] = {
 };
 
 static bool is_tet(int64_t type) { return type == 4 || type == 11 || (type >= 29 && type <= 31); }
+static bool is_quad(int64_t type) { return type == 3 || type == 10 || type == 16; }
 static bool is_triangle(int64_t type) { return type == 2 || type == 9 || (type >= 20 && type <= 25); }
 
 typedef struct numbered {
@@ -53,6 +54,7 @@ typedef struct reader {
   /* Corners by node number until all nodes are known. */
   int64_t *tet_nodes, *face_nodes;
   size_t tet_node_count, tet_node_capacity, face_node_count, face_node_capacity;
+  size_t surface_element_count; /* where polygons are wanted */
   /* Where values are wanted: the views of scalars, and number -> index of tets. */
   view *views;
   laves__word *view_names;
@@ -211,13 +213,14 @@ static laves_result read_entity(reader *r, int dimension, laves_error *error) {
   if (!next_int(r, &number) || !skip_doubles(r, dimension == 0 ? 3 : 6) || !next_size(r, &physical_count))
     return fail_short(r, error, "an entity");
   if (physical_count > 0 && !next_int(r, &physical)) return fail_short(r, error, "a physical group");
-  if (!skip_ints(r, physical_count - 1)) return fail_short(r, error, "a physical group");
+  if (physical_count > 0 && !skip_ints(r, physical_count - 1)) return fail_short(r, error, "a physical group");
   if (dimension > 0 && (!next_size(r, &bounding_count) || !skip_ints(r, bounding_count)))
     return fail_short(r, error, "a bounding entity");
   /* Negative numbers tell the direction of the group, not another group. */
+  if (dimension < 2 || physical == 0) return LAVES_OK;
+  if (physical > INT32_MAX || physical < -INT32_MAX)
+    return laves__mesh_input_fail(r->input, error, "physical group %lld is too large", (long long)physical);
   const int64_t group = physical < 0 ? -physical : physical;
-  if (dimension < 2 || group == 0) return LAVES_OK;
-  if (group > INT32_MAX) return laves__mesh_input_fail(r->input, error, "physical group %lld is too large", (long long)group);
   if (!table_add(r, &r->entities[dimension - 2], number, (int32_t)group)) return laves__fail_memory(r->input->context, error);
   return LAVES_OK;
 }
@@ -288,6 +291,30 @@ static bool keep_nodes(reader *r, int64_t **kept, size_t *count, size_t *capacit
   return true;
 }
 
+/* A triangle; `element` is where it comes from. */
+static bool add_face(reader *r, int32_t group, const int64_t nodes[3], size_t element) {
+  const int32_t later[3] = {0};
+  laves__mesh_input *input = r->input;
+  if (input->polygons) {
+    if (!laves__grow(input->context, &input->face_elements, &input->face_element_capacity, input->face_count + 1,
+                     sizeof *input->face_elements))
+      return false;
+    input->face_elements[input->face_count] = (int32_t)element;
+  }
+  return laves__mesh_input_add_face(input, later, group) &&
+         keep_nodes(r, &r->face_nodes, &r->face_node_count, &r->face_node_capacity, nodes, 3);
+}
+
+/* A triangle or quadrangle of a surface. */
+static laves_result add_polygon(reader *r, int32_t group, const int64_t *nodes, bool quad, laves_error *error) {
+  const size_t element = r->surface_element_count++;
+  if (element >= INT32_MAX) return laves__mesh_input_fail(r->input, error, "there are more than 2147483647 surface elements");
+  bool enough = add_face(r, group, nodes, element);
+  if (enough && quad) enough = add_face(r, group, (int64_t[]){nodes[0], nodes[2], nodes[3]}, element);
+  if (element % 65536 == 65535 && laves__mesh_input_cancelled(r->input, r->scan.at)) return laves__fail_cancelled(error);
+  return enough ? LAVES_OK : laves__fail_memory(r->input->context, error);
+}
+
 static laves_result add_element(reader *r, int64_t number, int64_t type, int32_t group, const int64_t *nodes,
                                 laves_error *error) {
   const int32_t later[4] = {0};
@@ -301,9 +328,8 @@ static laves_result add_element(reader *r, int64_t number, int64_t type, int32_t
              keep_nodes(r, &r->tet_nodes, &r->tet_node_count, &r->tet_node_capacity, nodes, 4);
     input->higher_order |= type != 4;
     if (input->tet_count % 65536 == 0 && laves__mesh_input_cancelled(input, r->scan.at)) return laves__fail_cancelled(error);
-  } else if (is_triangle(type)) {
-    enough = laves__mesh_input_add_face(input, later, group) &&
-             keep_nodes(r, &r->face_nodes, &r->face_node_count, &r->face_node_capacity, nodes, 3);
+  } else if (is_triangle(type) || (is_quad(type) && input->polygons)) {
+    return add_polygon(r, group, nodes, is_quad(type), error);
   }
   return enough ? LAVES_OK : laves__fail_memory(input->context, error);
 }

@@ -3,11 +3,13 @@
  * The header lists elements ("vertex", "face", others), each with a count and properties, which are numbers or lists of
  * numbers of eight types; the data follow in that order. All of them are walked through; used are x, y, z of "vertex",
  * the list vertex_indices (or vertex_index) of "face", or of "tristrips" with -1 between strips, and as tags an integer
- * property of "face" with one of the names in is_label(). Elements may stand in any order.
+ * property of "face", as choose_label() tells. Elements may stand in any order. Comments such as "comment label 3 inlet" name the
+ * values of a property called "label", as write_surface.c writes them.
  *
  * Every value is handled as a double, which holds all eight types exactly. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "io/surface_build.h"
@@ -38,6 +40,12 @@ typedef struct ply_element {
   unsigned roles; /* bit 1 << role for each that a property has */
 } ply_element;
 
+/* What a comment calls a label. */
+typedef struct ply_name {
+  int64_t label;
+  laves__word name;
+} ply_name;
+
 typedef enum ply_encoding { ENCODING_NONE, ASCII, LITTLE_ENDIAN_BINARY, BIG_ENDIAN_BINARY } ply_encoding;
 
 typedef struct ply_file {
@@ -47,7 +55,9 @@ typedef struct ply_file {
   size_t element_count, element_capacity;
   ply_property *properties;
   size_t property_count, property_capacity;
-  double label; /* that triangles have now; NAN before the first */
+  double label;    /* that triangles have now; NAN before the first */
+  ply_name *names; /* ascending once the header is read */
+  size_t name_count, name_capacity;
 } ply_file;
 
 bool laves__is_ply(laves__scan scan) {
@@ -100,14 +110,6 @@ static laves_result read_element(ply_file *file) {
   return LAVES_OK;
 }
 
-static bool is_label(laves__word name) {
-  static const char *const NAMES[] = {"label", "tag", "region", "region_id", "material_index", "group", "segment", "part"};
-  for (size_t i = 0; i < LAVES__COUNT_OF(NAMES); ++i) {
-    if (laves__word_is(name, NAMES[i])) return true;
-  }
-  return false;
-}
-
 static ply_role role_of(const ply_property *property, laves__word element) {
   const laves__word name = property->name;
   if (laves__word_is(element, "vertex") && !property->is_list && name.length == 1 && *name.at >= 'x' && *name.at <= 'z') {
@@ -116,8 +118,7 @@ static ply_role role_of(const ply_property *property, laves__word element) {
   const bool corners = property->is_list && (laves__word_is(name, "vertex_indices") || laves__word_is(name, "vertex_index"));
   if (corners && laves__word_is(element, "face")) return ROLE_CORNERS;
   if (corners && laves__word_is(element, "tristrips")) return ROLE_STRIP;
-  const bool label = laves__word_is(element, "face") && !property->is_list && property->type < FLOAT32 && is_label(name);
-  return label ? ROLE_LABEL : ROLE_NONE;
+  return ROLE_NONE;
 }
 
 static laves_result read_property(ply_file *file) {
@@ -145,6 +146,69 @@ static laves_result read_property(ply_file *file) {
   return LAVES_OK;
 }
 
+/* A comment, of which the scan is behind the first word. */
+static laves_result read_comment(ply_file *file) {
+  laves__scan *scan = &file->build->scan;
+  ply_name named;
+  if (!laves__scan_keyword(scan, "label") || !laves__scan_int(scan, &named.label)) return LAVES_OK;
+  named.name = laves__scan_rest(scan);
+  if (named.name.length == 0) return LAVES_OK;
+  if (!laves__grow(file->build->context, &file->names, &file->name_capacity, file->name_count + 1, sizeof named))
+    return laves__fail_memory(file->build->context, file->build->error);
+  file->names[file->name_count++] = named;
+  return LAVES_OK;
+}
+
+/* By label, then by place in the file. */
+static int compare_names(const void *a, const void *b) {
+  const ply_name *x = a, *y = b;
+  if (x->label != y->label) return x->label < y->label ? -1 : 1;
+  return (x->name.at > y->name.at) - (x->name.at < y->name.at);
+}
+
+/* The first name of a label, or NULL. */
+static const ply_name *find_name(const ply_file *file, double label) {
+  size_t low = 0, high = file->name_count;
+  while (low < high) {
+    const size_t middle = low + (high - low) / 2;
+    if ((double)file->names[middle].label < label)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < file->name_count && (double)file->names[low].label == label ? &file->names[low] : NULL;
+}
+
+/* Whether a property of faces may be a label, going by its type: a colour or a flag is none. */
+static bool can_be_label(const ply_property *property) {
+  static const char *const OTHERS[] = {"red", "green", "blue", "alpha", "r", "g", "b", "a", "flags", "flag", "quality"};
+  for (size_t i = 0; i < LAVES__COUNT_OF(OTHERS); ++i) {
+    if (laves__word_is(property->name, OTHERS[i])) return false;
+  }
+  return !property->is_list && property->type < FLOAT32;
+}
+
+/* The label of faces: the integer property whose name stands first in this list; else the only integer that is neither
+ * colour nor flag. */
+static void choose_label(ply_file *file, ply_element *element) {
+  static const char *const NAMES[] = {"label",          "tag",       "group", "material", "region", "object",
+                                      "material_index", "region_id", "part",  "segment",  "patch",  "group_id"};
+  ply_property *first = file->properties + element->first_property, *label = NULL;
+  for (size_t n = 0; n < LAVES__COUNT_OF(NAMES) && label == NULL; ++n) {
+    for (size_t i = 0; i < element->property_count && label == NULL; ++i) {
+      if (can_be_label(&first[i]) && laves__word_is(first[i].name, NAMES[n])) label = &first[i];
+    }
+  }
+  size_t candidates = 0;
+  for (size_t i = 0; i < element->property_count && label == NULL; ++i) candidates += can_be_label(&first[i]);
+  for (size_t i = 0; i < element->property_count && candidates == 1; ++i) {
+    if (can_be_label(&first[i])) label = &first[i];
+  }
+  if (label == NULL) return;
+  label->role = ROLE_LABEL;
+  element->roles |= 1u << ROLE_LABEL;
+}
+
 /* Goes behind the line "end_header". Where lines end with a lone CR, an LF behind it is data already. */
 static laves_result end_header(ply_file *file) {
   laves__scan *scan = &file->build->scan;
@@ -162,6 +226,11 @@ static laves_result end_header(ply_file *file) {
     return laves__build_fail(file->build, "the header has no line 'format'");
   }
   file->build->binary = file->encoding != ASCII;
+  if (file->name_count > 0) qsort(file->names, file->name_count, sizeof *file->names, compare_names);
+  for (size_t i = 0; i < file->element_count; ++i) {
+    ply_element *element = &file->elements[i];
+    if (element->property_count > 0 && laves__word_is(element->name, "face")) choose_label(file, element);
+  }
   return LAVES_OK;
 }
 
@@ -176,7 +245,9 @@ static laves_result read_header(ply_file *file) {
       result = read_element(file);
     } else if (laves__scan_keyword(scan, "property")) {
       result = read_property(file);
-    } else if (!laves__scan_keyword(scan, "comment") && !laves__scan_keyword(scan, "obj_info") && laves__scan_blanks(scan)) {
+    } else if (laves__scan_keyword(scan, "comment")) {
+      result = read_comment(file);
+    } else if (!laves__scan_keyword(scan, "obj_info") && laves__scan_blanks(scan)) {
       result = laves__scan_fail_expected(scan, file->build->error, "element, property, comment or end_header");
     }
   }
@@ -357,7 +428,9 @@ static laves_result change_label(ply_file *file, const ply_element *element, dou
   char text[64];
   const int length = snprintf(text, sizeof text, "%.*s %.0f", (int)kind.length, kind.at, label);
   file->label = label;
-  const bool started = laves__tag_list_start(build->context, &build->tags, text, (size_t)length, first_triangle, "unlabelled");
+  const ply_name *known = laves__word_is(kind, "label") ? find_name(file, label) : NULL;
+  const laves__word name = known ? known->name : (laves__word){text, (size_t)length};
+  const bool started = laves__tag_list_start(build->context, &build->tags, name.at, name.length, first_triangle, "unlabelled");
   return started ? LAVES_OK : laves__fail_memory(build->context, build->error);
 }
 
@@ -421,5 +494,6 @@ laves_result laves__read_ply(laves__surface_build *build) {
   }
   laves__free(build->context, file.elements, file.element_capacity, sizeof *file.elements);
   laves__free(build->context, file.properties, file.property_capacity, sizeof *file.properties);
+  laves__free(build->context, file.names, file.name_capacity, sizeof *file.names);
   return result;
 }

@@ -1,7 +1,7 @@
 /* Reading a triangle surface of any format: finds which one it is, from the content where that tells.
  *
- * Order matters. PLY has a signature. A binary STL is known by its length, which its own count must explain to the byte:
- * this comes before "solid", with which binary files begin as well, and no text can pass it by chance since four printable
+ * Order matters. Gmsh and PLY have a signature. A binary STL is known by its length, which its own count must explain to the
+ * byte: this comes before "solid", with which binary files begin as well, and no text can pass it by chance since four printable
  * bytes at 80 would mean a length of gigabytes. OFF and ASCII STL have a word to begin with, OBJ only its vocabulary.
  * When nothing fits, the extension says which reader shall explain what is wrong. */
 #include <string.h>
@@ -15,9 +15,9 @@ typedef struct surface_format {
 } surface_format;
 
 static const surface_format FORMATS[] = {
-    {"ply", laves__is_ply, laves__read_ply}, {"stl", laves__is_stl_binary, laves__read_stl_binary},
-    {"off", laves__is_off, laves__read_off}, {"stl", laves__is_stl_ascii, laves__read_stl_ascii},
-    {"obj", laves__is_obj, laves__read_obj},
+    {"msh", laves__is_gmsh, laves__read_gmsh_surface},     {"ply", laves__is_ply, laves__read_ply},
+    {"stl", laves__is_stl_binary, laves__read_stl_binary}, {"off", laves__is_off, laves__read_off},
+    {"stl", laves__is_stl_ascii, laves__read_stl_ascii},   {"obj", laves__is_obj, laves__read_obj},
 };
 
 static bool has_extension(const char *name, const char *extension) {
@@ -46,8 +46,8 @@ laves_result laves__surface_parse(laves_context *context, const void *bytes, siz
   const surface_format *format = find_format(&build.scan);
   if (format == NULL) {
     return laves__fail(error, LAVES_ERROR_INPUT,
-                       "%s%sthe content is no triangle surface that is known here; give STL, OBJ, PLY or OFF", name ? name : "",
-                       name ? ": " : "");
+                       "%s%sthe content is no triangle surface that is known here; give STL, OBJ, PLY, OFF or Gmsh",
+                       name ? name : "", name ? ": " : "");
   }
   return laves__build_finish(&build, format->read(&build));
 }
@@ -59,6 +59,7 @@ void laves__surface_input_free(laves_context *context, laves__surface_input *inp
   }
   laves__free(context, input->tag_names, (size_t)input->tag_count, sizeof *input->tag_names);
   laves__free(context, input->tags, input->triangle_capacity, sizeof *input->tags);
+  laves__free(context, input->sources, input->triangle_capacity, sizeof *input->sources);
   laves__free(context, input->points, input->point_capacity, sizeof *input->points);
   laves__free(context, input->triangles, input->triangle_capacity, sizeof *input->triangles);
   *input = (laves__surface_input){0};

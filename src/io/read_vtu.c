@@ -233,6 +233,44 @@ static laves_result add_candidate(reader *r, laves__word section, const tag *t, 
   return LAVES_OK;
 }
 
+/* What a character reference in an attribute stands for; *at moves behind it. */
+static char unescaped(const char **at, const char *end) {
+  static const struct {
+    const char *text;
+    char character;
+  } references[] = {{"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}};
+  for (size_t i = 0; i < LAVES__COUNT_OF(references); i++)
+    if (starts_with(*at, end, references[i].text)) {
+      *at += strlen(references[i].text);
+      return references[i].character;
+    }
+  return *(*at)++;
+}
+
+/* An array of the field data of pairs (number, dimension), inline: its name is that of regions and face tags, as write_vtu.c
+ * tells. Any other array is passed over. */
+static laves_result read_group_name(reader *r, const tag *t, const char *content, laves_error *error) {
+  laves__word raw = {"", 0};
+  char name[sizeof r->input->groups->name];
+  size_t length = 0;
+  if (!attribute_is(t, "type", "Int32") || !attribute_is(t, "NumberOfComponents", "2") || !attribute_is(t, "format", "ascii") ||
+      !attribute(t, "Name", &raw))
+    return LAVES_OK;
+  for (const char *at = raw.at, *end = raw.at + raw.length; at < end && length < sizeof name - 1;)
+    name[length++] = unescaped(&at, end);
+  const char *end = content;
+  if (!find_byte(&end, r->input->end, '<')) end = r->input->end;
+  laves__scan scan = laves__scan_begin(NULL, content, (size_t)(end - content));
+  int64_t number, dimension;
+  while (laves__scan_space(&scan) && laves__scan_int(&scan, &number) && laves__scan_space(&scan) &&
+         laves__scan_int(&scan, &dimension)) {
+    if ((dimension != 2 && dimension != 3) || number < INT32_MIN || number > INT32_MAX) continue;
+    if (!laves__mesh_input_add_group(r->input, (int)dimension, (int32_t)number, name, length))
+      return laves__fail_memory(r->input->context, error);
+  }
+  return LAVES_OK;
+}
+
 static laves_result find_appended(reader *r, const tag *t, const char *content, laves_error *error) {
   r->appended_base64 = attribute_is(t, "encoding", "base64");
   while (content < r->input->end && is_space(*content)) content++;
@@ -260,6 +298,8 @@ static laves_result read_structure(reader *r, laves_error *error) {
       const int array = array_of(section, &t);
       if (array < ARRAY_COUNT) result = read_source(r, &t, at, &r->pieces[r->piece_count - 1].sources[array], error);
       if (result == LAVES_OK) result = add_candidate(r, section, &t, at, error);
+    } else if (laves__word_is(t.name, "DataArray") && laves__word_is(section, "FieldData")) {
+      result = read_group_name(r, &t, at, error);
     } else if (!laves__word_is(t.name, "/DataArray")) {
       section = t.name;
     }

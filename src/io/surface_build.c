@@ -46,6 +46,19 @@ void laves__build_face(laves__surface_build *build) {
   ++build->face_count;
 }
 
+/* Notes the face of the newest triangle. Until a face is more than a triangle there is nothing to note. */
+static laves_result note_source(laves__surface_build *build) {
+  const size_t count = build->input->triangle_count;
+  if (!build->sources && build->corner_count == 2) return LAVES_OK;
+  const bool first = !build->sources;
+  if (!laves__grow(build->context, &build->sources, &build->source_capacity, count, sizeof *build->sources)) {
+    return laves__fail_memory(build->context, build->error);
+  }
+  for (size_t i = 0; first && i + 1 < count; ++i) build->sources[i] = (uint32_t)i;
+  build->sources[count - 1] = (uint32_t)(build->face_count - 1);
+  return LAVES_OK;
+}
+
 laves_result laves__build_corner(laves__surface_build *build, int64_t index) {
   laves__surface_input *input = build->input;
   if (index < 0 || index >= UINT32_MAX) {
@@ -66,6 +79,8 @@ laves_result laves__build_corner(laves__surface_build *build, int64_t index) {
     triangle[0] = build->fan[0];
     triangle[1] = build->fan[1];
     triangle[2] = corner;
+    const laves_result noted = note_source(build);
+    if (noted != LAVES_OK) return noted;
   }
   build->fan[build->corner_count > 0] = corner;
   ++build->corner_count;
@@ -167,10 +182,24 @@ static laves_result hand_over_tags(laves__surface_build *build) {
   return LAVES_OK;
 }
 
+static laves_result hand_over_sources(laves__surface_build *build) {
+  laves__surface_input *input = build->input;
+  if (build->sources == NULL) return LAVES_OK;
+  if (!fit(build->context, &build->sources, &build->source_capacity, input->triangle_capacity, sizeof *build->sources)) {
+    return laves__fail_memory(build->context, build->error);
+  }
+  input->sources = build->sources;
+  build->sources = NULL;
+  build->source_capacity = 0;
+  return LAVES_OK;
+}
+
 laves_result laves__build_finish(laves__surface_build *build, laves_result result) {
   if (result == LAVES_OK) result = check_all(build);
   if (result == LAVES_OK) result = fit_all(build, build->input->point_count, build->input->triangle_count);
   if (result == LAVES_OK) result = hand_over_tags(build);
+  if (result == LAVES_OK) result = hand_over_sources(build);
+  laves__free(build->context, build->sources, build->source_capacity, sizeof *build->sources);
   laves__tag_list_free(build->context, &build->tags);
   if (result != LAVES_OK) laves__surface_input_free(build->context, build->input);
   return result;

@@ -21,6 +21,8 @@ typedef struct laves__surface_build {
   const char *highest_at; /* and where, for the message; NULL: no corner yet */
   size_t highest_face;    /* and in which face, from 1 */
   size_t face_count;      /* faces begun, before they became triangles */
+  uint32_t *sources; /* [triangle_count] which of them each triangle is a part of; NULL: no face had more than three corners */
+  size_t source_capacity;
 } laves__surface_build;
 
 /* Appends a point; all three must be finite. */
@@ -54,6 +56,7 @@ laves_result laves__read_stl_binary(laves__surface_build *build);
 laves_result laves__read_obj(laves__surface_build *build);
 laves_result laves__read_ply(laves__surface_build *build);
 laves_result laves__read_off(laves__surface_build *build);
+laves_result laves__read_gmsh_surface(laves__surface_build *build);
 
 /* Whether the bytes look like the format, from their beginning (and length) alone. */
 bool laves__is_stl_ascii(laves__scan scan);
@@ -61,5 +64,6 @@ bool laves__is_stl_binary(laves__scan scan);
 bool laves__is_obj(laves__scan scan);
 bool laves__is_ply(laves__scan scan);
 bool laves__is_off(laves__scan scan);
+bool laves__is_gmsh(laves__scan scan);
 
 #endif

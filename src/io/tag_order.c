@@ -88,6 +88,22 @@ void laves__tag_order_free(laves_context *context, laves__tag_order *order) {
   memset(order, 0, sizeof *order);
 }
 
+static void make_printable(char *name) {
+  for (char *c = name; *c; c++)
+    if ((unsigned char)*c < ' ' || *c == '"') *c = '_';
+}
+
+void laves__tag_comments(laves__output *out, const laves_mesh *mesh, int dimension, const char *start) {
+  if (!(dimension == 3 ? mesh->regions : mesh->face_tags)) return;
+  for (size_t i = 0; i < mesh->group_count; i++) {
+    char name[LAVES__TAG_NAME_MAX];
+    if (mesh->groups[i].dimension != dimension || !mesh->groups[i].name[0]) continue;
+    snprintf(name, sizeof name, "%s", mesh->groups[i].name);
+    make_printable(name);
+    laves__output_printf(out, "%s%ld %s\n", start, (long)mesh->groups[i].tag, name);
+  }
+}
+
 void laves__tag_name(const laves_mesh *mesh, int dimension, const laves__tag_order *order, size_t i,
                      char name[LAVES__TAG_NAME_MAX]) {
   const char *known = laves_mesh_group_name(mesh, dimension, order->tags[i]);
@@ -98,6 +114,5 @@ void laves__tag_name(const laves_mesh *mesh, int dimension, const laves__tag_ord
     snprintf(name, LAVES__TAG_NAME_MAX, "%s", general);
   else
     snprintf(name, LAVES__TAG_NAME_MAX, "%s_%ld", general, (long)order->tags[i]);
-  for (char *c = name; *c; c++)
-    if ((unsigned char)*c < ' ' || *c == '"') *c = '_';
+  make_printable(name);
 }

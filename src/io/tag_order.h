@@ -2,6 +2,7 @@
 #ifndef LAVES_IO_TAG_ORDER_H
 #define LAVES_IO_TAG_ORDER_H
 
+#include "io/output.h"
 #include "mesh/mesh.h"
 
 typedef struct laves__tag_order {
@@ -16,6 +17,10 @@ typedef struct laves__tag_order {
 bool laves__tag_order_make(laves_context *context, const int32_t *tags, size_t element_count, laves__tag_order *order);
 void laves__tag_order_free(laves_context *context, laves__tag_order *order);
 static inline size_t laves__tag_order_item(const laves__tag_order *order, size_t i) { return order->order ? order->order[i] : i; }
+
+/* One line for each name of a region (dimension 3) or tag (2) that the mesh has: `start`, number, name. For formats that have
+ * comments but no names. */
+void laves__tag_comments(laves__output *out, const laves_mesh *mesh, int dimension, const char *start);
 
 /* The name of tag number i: as the mesh has it, else "solid" or "boundary" (by dimension 3 or 2), with "_" and the tag
  * behind it when there are several. Quotes and control characters become "_". */

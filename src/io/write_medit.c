@@ -1,9 +1,10 @@
 /* Medit's .mesh (text) and .meshb (binary): vertices, tetrahedra with their region and boundary triangles with their tag as
- * reference, numbered from 1.
+ * reference, numbered from 1. Names of both are comments in the text, such as "# Triangles 3 inlet".
  *
  * Binary files are chains of blocks: a keyword's number, the position of the next block, a count, the items. Version 2 has
  * positions of 32 bits, version 3 of 64; both have 32-bit integers and doubles. Source: libMeshb (Inria), "The GMF file
  * format", https://github.com/LoicMarechal/libMeshb. */
+#include "io/tag_order.h"
 #include "io/write_mesh.h"
 #include "io/write_text.h"
 
@@ -46,7 +47,10 @@ static size_t put_faces(const void *user, size_t begin, size_t end, char *bytes)
 
 void laves__write_medit_text(laves__output *out, const laves_mesh *mesh) {
   out->expected = 55.0 * (double)mesh->vertex_count + 30.0 * (double)(mesh->tet_count + mesh->face_count);
-  laves__output_printf(out, "MeshVersionFormatted 2\nDimension 3\n\nVertices\n%zu\n", mesh->vertex_count);
+  laves__output_printf(out, "MeshVersionFormatted 2\nDimension 3\n");
+  laves__tag_comments(out, mesh, 3, "# Tetrahedra ");
+  laves__tag_comments(out, mesh, 2, "# Triangles ");
+  laves__output_printf(out, "\nVertices\n%zu\n", mesh->vertex_count);
   laves__output_items(out, mesh->vertex_count, LAVES__POINT_TEXT_MAX + 3, put_vertices, mesh);
   laves__output_printf(out, "\nTetrahedra\n%zu\n", mesh->tet_count);
   laves__output_items(out, mesh->tet_count, 5 * (LAVES__INTEGER_TEXT_MAX + 1), put_tets, mesh);

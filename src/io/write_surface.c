@@ -1,7 +1,8 @@
 /* The boundary as OBJ, PLY and OFF: only vertices that boundary triangles use, in the order of the mesh.
  *
- * OBJ has a group for each face tag; PLY has the tag as the property "label" of each face where there are tags; OFF has
- * none. Coordinates are in full: shortest text that reads back the same, or doubles. */
+ * OBJ has a group for each face tag; PLY has the tag as the property "label" of each face where there are tags, and their names
+ * in comments such as "comment label 3 inlet"; OFF has none. Coordinates are in full: shortest text that reads back the same, or
+ * doubles. */
 #include <string.h>
 
 #include "io/tag_order.h"
@@ -175,12 +176,13 @@ static size_t pack_polygons(const void *user, size_t begin, size_t end, char *by
 void laves__write_ply(laves__output *out, const laves_mesh *mesh, bool ascii) {
   surface s;
   if (!make_surface(out, mesh, &s)) return;
+  laves__output_printf(out, "ply\nformat %s 1.0\ncomment boundary of a tetrahedral mesh, by laves\n",
+                       ascii ? "ascii" : "binary_little_endian");
+  laves__tag_comments(out, mesh, 2, "comment label ");
   laves__output_printf(out,
-                       "ply\nformat %s 1.0\ncomment boundary of a tetrahedral mesh, by laves\n"
                        "element vertex %zu\nproperty double x\nproperty double y\nproperty double z\n"
                        "element face %zu\nproperty list uchar int vertex_indices\n%send_header\n",
-                       ascii ? "ascii" : "binary_little_endian", s.count, mesh->face_count,
-                       mesh->face_tags ? "property int label\n" : "");
+                       s.count, mesh->face_count, mesh->face_tags ? "property int label\n" : "");
   if (ascii) {
     laves__output_items(out, s.count, LAVES__POINT_TEXT_MAX + 1, put_bare_points, &s);
     laves__output_items(out, mesh->face_count, POLYGON_TEXT_MAX, mesh->face_tags ? put_labelled_polygons : put_polygons, &s);

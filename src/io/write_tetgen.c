@@ -1,6 +1,7 @@
 /* TetGen's three files: .node (points), .ele (tetrahedra, with their region as attribute where there are regions) and .face
- * (boundary triangles with their tag as marker), numbered from 0.
+ * (boundary triangles with their tag as marker), numbered from 0. Names are comments at the end, such as "# marker 3 inlet".
  * Source: Hang Si, TetGen manual, section 5, "File formats". */
+#include "io/tag_order.h"
 #include "io/write_mesh.h"
 #include "io/write_text.h"
 
@@ -56,10 +57,12 @@ void laves__write_tetgen_ele(laves__output *out, const laves_mesh *mesh) {
   out->expected = 35.0 * (double)mesh->tet_count;
   laves__output_printf(out, "%zu 4 %d\n", mesh->tet_count, mesh->regions ? 1 : 0);
   laves__output_items(out, mesh->tet_count, ROW_MAX, put_tets, mesh);
+  laves__tag_comments(out, mesh, 3, "# attribute ");
 }
 
 void laves__write_tetgen_face(laves__output *out, const laves_mesh *mesh) {
   out->expected = 30.0 * (double)mesh->face_count;
   laves__output_printf(out, "%zu 1\n", mesh->face_count);
   laves__output_items(out, mesh->face_count, ROW_MAX, put_faces, mesh);
+  laves__tag_comments(out, mesh, 2, "# marker ");
 }

@@ -1,8 +1,11 @@
 /* VTK's XML file for unstructured grids: Float64 points, Int32 connectivity, offsets of 32 bits where they suffice, cell
- * data "region" and "class" (0: tile of the lattice, 1: boundary layer, 2: boundary triangle).
+ * data "region", "class" (0: tile of the lattice, 1: boundary layer, 2: boundary triangle), and "source_face" where it is known.
  *
- * Tetrahedra come first. When the mesh carries face tags, its boundary triangles follow as cells of their own with the tag
- * as their "region", so that tags survive; without tags the file holds tetrahedra only.
+ * Tetrahedra come first. When the mesh carries face tags or sources, its boundary triangles follow as cells of their own with the
+ * tag as their "region", so that tags survive; without either the file holds tetrahedra only.
+ *
+ * VTK has no place for names of cells' numbers. Each name of a group becomes an array of the field data, with the pairs (number,
+ * dimension) that have it: 3 for regions, 2 for tags. meshio knows its "field data" in this form from Gmsh's files.
  *
  * Binary arrays are appended as raw bytes behind the XML, each after a header of UInt64: its byte count, or for compressed
  * arrays the number of blocks, their size, the size of the last (0 when full) and every block's compressed size. The XML
@@ -41,13 +44,18 @@ static int64_t type(const grid *g, size_t i) { return i < g->mesh->tet_count ? C
 
 static int64_t region(const grid *g, size_t i) {
   const size_t tets = g->mesh->tet_count;
-  if (i >= tets) return g->mesh->face_tags[i - tets];
+  if (i >= tets) return g->mesh->face_tags ? g->mesh->face_tags[i - tets] : 1;
   return g->mesh->regions ? g->mesh->regions[i] : 1;
 }
 
 static int64_t class(const grid *g, size_t i) {
   if (i >= g->mesh->tet_count) return CLASS_FACE;
   return i < g->mesh->lattice_tet_count ? CLASS_TILE : CLASS_LAYER;
+}
+
+static int64_t source_face(const grid *g, size_t i) {
+  const size_t tets = g->mesh->tet_count;
+  return i < tets ? -1 : g->mesh->face_sources[i - tets];
 }
 
 typedef enum kind { FLOAT64, INT32, INT64, UINT8 } kind;
@@ -67,7 +75,7 @@ typedef struct array {
   uint8_t **blocks;
 } array;
 
-enum { POINTS, CONNECTIVITY, OFFSETS, TYPES, REGION, CLASS, ARRAY_COUNT };
+enum { POINTS, CONNECTIVITY, OFFSETS, TYPES, REGION, CLASS, SOURCE_FACE, ARRAY_COUNT };
 
 static void describe_arrays(const grid *g, array arrays[ARRAY_COUNT]) {
   const size_t corners = 4 * g->mesh->tet_count + 3 * g->faces;
@@ -78,7 +86,11 @@ static void describe_arrays(const grid *g, array arrays[ARRAY_COUNT]) {
   arrays[TYPES] = (array){g, "types", UINT8, 1, g->cells, type, 0, NULL, NULL};
   arrays[REGION] = (array){g, "region", INT32, 1, g->cells, region, 0, NULL, NULL};
   arrays[CLASS] = (array){g, "class", UINT8, 1, g->cells, class, 0, NULL, NULL};
+  arrays[SOURCE_FACE] = (array){g, "source_face", INT32, 1, g->cells, source_face, 0, NULL, NULL};
 }
+
+/* An array that the mesh has no values for is left out; it is the last one. */
+static int array_count(const grid *g) { return g->mesh->face_sources ? ARRAY_COUNT : SOURCE_FACE; }
 
 static uint64_t raw_bytes(const array *a) { return (uint64_t)a->count * kind_bytes[a->kind]; }
 
@@ -109,6 +121,8 @@ static size_t pack(const void *user, size_t begin, size_t end, char *bytes) {
     pack_integers(g, begin, end, bytes, sizeof(uint8_t), type);
   else if (a->integer == region)
     pack_integers(g, begin, end, bytes, sizeof(int32_t), region);
+  else if (a->integer == source_face)
+    pack_integers(g, begin, end, bytes, sizeof(int32_t), source_face);
   else
     pack_integers(g, begin, end, bytes, sizeof(uint8_t), class);
   return (end - begin) * size;
@@ -279,15 +293,73 @@ static void write_element(laves__output *out, const array *a, form f, uint64_t *
   *position += f == RAW ? sizeof(uint64_t) + raw_bytes(a) : compressed_bytes(a);
 }
 
+/* Text of an attribute: what would end it or begin markup is spelled out. */
+static void write_escaped(laves__output *out, const char *text) {
+  for (; *text; text++) switch (*text) {
+      case '&':
+        laves__output_printf(out, "&amp;");
+        break;
+      case '<':
+        laves__output_printf(out, "&lt;");
+        break;
+      case '>':
+        laves__output_printf(out, "&gt;");
+        break;
+      case '"':
+        laves__output_printf(out, "&quot;");
+        break;
+      default:
+        laves__output_printf(out, "%c", (unsigned char)*text < ' ' ? '_' : *text);
+    }
+}
+
+/* Whether the file holds what the group names. */
+static bool is_told(const laves_mesh *mesh, const laves__group *group) {
+  return group->name[0] && (group->dimension == 3 ? mesh->regions != NULL : mesh->face_tags != NULL);
+}
+
+static bool is_first_of_its_name(const laves_mesh *mesh, size_t group) {
+  for (size_t i = 0; i < group; i++)
+    if (is_told(mesh, &mesh->groups[i]) && strcmp(mesh->groups[i].name, mesh->groups[group].name) == 0) return false;
+  return true;
+}
+
+/* One array for all groups of this name. */
+static void write_name(laves__output *out, const laves_mesh *mesh, const char *name) {
+  size_t count = 0;
+  for (size_t i = 0; i < mesh->group_count; i++) count += is_told(mesh, &mesh->groups[i]) && !strcmp(mesh->groups[i].name, name);
+  laves__output_printf(out, "      <DataArray type=\"Int32\" Name=\"");
+  write_escaped(out, name);
+  laves__output_printf(out, "\" NumberOfComponents=\"2\" NumberOfTuples=\"%zu\" format=\"ascii\">", count);
+  for (size_t i = 0; i < mesh->group_count; i++)
+    if (is_told(mesh, &mesh->groups[i]) && strcmp(mesh->groups[i].name, name) == 0)
+      laves__output_printf(out, " %ld %d", (long)mesh->groups[i].tag, mesh->groups[i].dimension);
+  laves__output_printf(out, " </DataArray>\n");
+}
+
+static void write_names(laves__output *out, const laves_mesh *mesh) {
+  enum { NAMES_MAX = 10000 }; /* looking for equal names is quadratic; nobody reads so many */
+  size_t told = 0;
+  for (size_t i = 0; i < mesh->group_count; i++) told += is_told(mesh, &mesh->groups[i]);
+  if (told == 0 || told > NAMES_MAX) return;
+  laves__output_printf(out, "    <FieldData>\n");
+  for (size_t i = 0; i < mesh->group_count; i++)
+    if (is_told(mesh, &mesh->groups[i]) && is_first_of_its_name(mesh, i)) write_name(out, mesh, mesh->groups[i].name);
+  laves__output_printf(out, "    </FieldData>\n");
+}
+
 static void write_xml(laves__output *out, const grid *g, const array *arrays, form f) {
   laves__output_printf(
       out,
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"%s>\n"
-      "  <UnstructuredGrid>\n"
-      "    <Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n"
-      "      <Points>\n",
-      f == COMPRESSED ? " compressor=\"vtkZLibDataCompressor\"" : "", g->mesh->vertex_count, g->cells);
+      "  <UnstructuredGrid>\n",
+      f == COMPRESSED ? " compressor=\"vtkZLibDataCompressor\"" : "");
+  write_names(out, g->mesh);
+  laves__output_printf(out,
+                       "    <Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n"
+                       "      <Points>\n",
+                       g->mesh->vertex_count, g->cells);
   uint64_t position = 0;
   write_element(out, &arrays[POINTS], f, &position);
   laves__output_printf(out, "      </Points>\n      <Cells>\n");
@@ -296,13 +368,13 @@ static void write_xml(laves__output *out, const grid *g, const array *arrays, fo
   write_element(out, &arrays[TYPES], f, &position);
   laves__output_printf(out, "      </Cells>\n      <CellData Scalars=\"region\">\n");
   write_element(out, &arrays[REGION], f, &position);
-  write_element(out, &arrays[CLASS], f, &position);
+  for (int i = CLASS; i < array_count(g); i++) write_element(out, &arrays[i], f, &position);
   laves__output_printf(out, "      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n");
 }
 
 static void write_appended(laves__output *out, const array *arrays, form f) {
   laves__output_printf(out, "  <AppendedData encoding=\"raw\">\n_");
-  for (int i = 0; i < ARRAY_COUNT; i++)
+  for (int i = 0; i < array_count(arrays->grid); i++)
     if (f == RAW)
       write_raw(out, &arrays[i]);
     else
@@ -315,8 +387,9 @@ static const double compressing_share = 0.9;
 
 static void compress_arrays(laves__output *out, array arrays[ARRAY_COUNT], int level) {
   double total = 0;
-  for (int i = 0; i < ARRAY_COUNT; i++) total += (double)raw_bytes(&arrays[i]);
-  for (int i = 0; i < ARRAY_COUNT && out->error.result == LAVES_OK && total > 0; i++) {
+  const int count = array_count(arrays->grid);
+  for (int i = 0; i < count; i++) total += (double)raw_bytes(&arrays[i]);
+  for (int i = 0; i < count && out->error.result == LAVES_OK && total > 0; i++) {
     const double step = compressing_share * (double)raw_bytes(&arrays[i]) / total;
     compress_array(out->context, &arrays[i], level, out->prepared, step, &out->error);
     out->prepared += step;
@@ -325,12 +398,12 @@ static void compress_arrays(laves__output *out, array arrays[ARRAY_COUNT], int l
 
 void laves__write_vtu(laves__output *out, const laves_mesh *mesh, bool ascii, int compression_level) {
   const form f = ascii ? TEXT : compression_level > 0 ? COMPRESSED : RAW;
-  const size_t faces = mesh->face_tags ? mesh->face_count : 0;
+  const size_t faces = mesh->face_tags || mesh->face_sources ? mesh->face_count : 0;
   const grid g = {mesh, faces, mesh->tet_count + faces};
   array arrays[ARRAY_COUNT];
   describe_arrays(&g, arrays);
   if (f == COMPRESSED) compress_arrays(out, arrays, compression_level);
-  for (int i = 0; i < ARRAY_COUNT; i++)
+  for (int i = 0; i < array_count(&g); i++)
     out->expected += f == COMPRESSED ? (double)compressed_bytes(&arrays[i]) : (double)raw_bytes(&arrays[i]);
   write_xml(out, &g, arrays, f);
   if (f != TEXT) write_appended(out, arrays, f);

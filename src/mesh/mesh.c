@@ -33,6 +33,7 @@ void laves_mesh_free(laves_mesh *mesh) {
   laves__free(context, mesh->faces, mesh->face_count, sizeof *mesh->faces);
   laves__free(context, mesh->regions, mesh->tet_count, sizeof *mesh->regions);
   laves__free(context, mesh->face_tags, mesh->face_count, sizeof *mesh->face_tags);
+  laves__free(context, mesh->face_sources, mesh->face_count, sizeof *mesh->face_sources);
   laves__free(context, mesh->groups, mesh->group_count, sizeof *mesh->groups);
   laves__free(context, mesh, 1, sizeof *mesh);
 }
@@ -56,6 +57,7 @@ const int32_t *laves_mesh_tets(const laves_mesh *mesh) { return mesh->tets ? *me
 const int32_t *laves_mesh_faces(const laves_mesh *mesh) { return mesh->faces ? *mesh->faces : NULL; }
 const int32_t *laves_mesh_regions(const laves_mesh *mesh) { return mesh->regions; }
 const int32_t *laves_mesh_face_tags(const laves_mesh *mesh) { return mesh->face_tags; }
+const int32_t *laves_mesh_face_sources(const laves_mesh *mesh) { return mesh->face_sources; }
 size_t laves_mesh_lattice_tet_count(const laves_mesh *mesh) { return mesh->lattice_tet_count; }
 
 const char *laves_mesh_group_name(const laves_mesh *mesh, int dimension, int32_t tag) {

@@ -19,6 +19,7 @@ struct laves_mesh {
   int32_t (*faces)[3]; /* [face_count] boundary triangles, outwards */
   int32_t *regions;    /* [tet_count] or NULL: all 1 */
   int32_t *face_tags;  /* [face_count] or NULL: all 1 */
+  int32_t *face_sources; /* [face_count] or NULL: not asked for */
   size_t lattice_tet_count;
   laves__group *groups;
   size_t group_count;

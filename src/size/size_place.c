@@ -56,6 +56,12 @@ static laves_result take_tag(laves_context *context, const laves__source *source
   const laves__surface *surface = domain->oracle.surface;
   int32_t tag = 0;
   size_t count = 0;
+  if (!surface && domain->info.tag_count > 0)
+    return laves__fail(
+        error, LAVES_ERROR_INPUT,
+        "there are no triangles with the tag '%s' to refine near, as the input is a formula; give points, curves or "
+        "a size field",
+        source->text);
   if (!surface || !surface->tags)
     return laves__fail(error, LAVES_ERROR_INPUT, "there is no tag '%s' to refine near: the input has no named parts",
                        source->text);

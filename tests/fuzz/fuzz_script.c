@@ -20,12 +20,21 @@ static bool stop_soon(void *user, const char *phase, double fraction) {
   return --*left > 0;
 }
 
-static void check_box(const laves__oracle *o, laves__box3 box) {
+static void check_region(const laves_domain *domain, laves__vec3 point) {
+  const laves__oracle *o = &domain->oracle;
+  if (!o->region) return;
+  const int32_t region = o->region(o->self, point);
+  FUZZ_REQUIRE(region >= 0 && region < domain->region_count);
+}
+
+static void check_box(const laves_domain *domain, laves__box3 box) {
+  const laves__oracle *o = &domain->oracle;
   const laves__vec3 centre = box3_centre(box), half = v3_sub(box.upper, centre);
   const laves__side side = o->side(o->self, centre, v3_norm(half), half);
   const laves__vec3 points[3] = {centre, v3_lerp(centre, box.lower, 0.99), v3_lerp(centre, box.upper, 0.7)};
   double phi[3];
   o->evaluate(o->self, 3, points, phi, NULL);
+  check_region(domain, centre);
   for (int i = 0; i < 3; i++) {
     FUZZ_REQUIRE(isfinite(phi[i]));
     if (side != LAVES__UNDECIDED) FUZZ_REQUIRE(side == LAVES__OUTSIDE ? phi[i] > 0 : phi[i] < 0);
@@ -35,6 +44,7 @@ static void check_box(const laves__oracle *o, laves__box3 box) {
   const double reach = v3_norm(half);
   if (!o->project(o->self, centre, reach, &hint, &foot, &normal)) return;
   FUZZ_REQUIRE(v3_finite(foot) && v3_distance(foot, centre) <= reach && fabs(v3_norm(normal) - 1) < 1e-9);
+  if (o->tag) FUZZ_REQUIRE(laves_domain_tag_name(domain, o->tag(o->self, foot, hint)) != NULL);
 }
 
 static void check_solid(const laves_domain *domain) {
@@ -48,7 +58,7 @@ static void check_solid(const laves_domain *domain) {
       (&cell.lower.x)[k] = (&o->bounds.lower.x)[k] + (&step.x)[k] / 3 * (&widths.x)[k];
       (&cell.upper.x)[k] = (&cell.lower.x)[k] + (&widths.x)[k] / 3;
     }
-    check_box(o, cell);
+    check_box(domain, cell);
   }
 }
 

@@ -36,6 +36,7 @@ static int fuzz_surface(const uint8_t *bytes, size_t length, const char *name) {
   }
   for (size_t i = 0; i < input.triangle_count; ++i) {
     for (int j = 0; j < 3; ++j) FUZZ_REQUIRE(input.triangles[i][j] < input.point_count);
+    FUZZ_REQUIRE(input.sources == NULL || input.sources[i] <= i);
     FUZZ_REQUIRE(input.tags == NULL || (input.tags[i] >= 0 && input.tags[i] < input.tag_count));
   }
   laves__surface_input_free(context, &input);

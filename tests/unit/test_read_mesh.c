@@ -19,8 +19,8 @@ static const struct {
   int compression;
   bool names; /* the format keeps the names of groups */
 } kinds[] = {
-    {"zlib.vtu", LAVES_FORMAT_VTU, false, 6, false},       {"raw.vtu", LAVES_FORMAT_VTU, false, 0, false},
-    {"ascii.vtu", LAVES_FORMAT_VTU, true, 0, false},       {"binary22.msh", LAVES_FORMAT_GMSH22, false, 0, true},
+    {"zlib.vtu", LAVES_FORMAT_VTU, false, 6, true},        {"raw.vtu", LAVES_FORMAT_VTU, false, 0, true},
+    {"ascii.vtu", LAVES_FORMAT_VTU, true, 0, true},        {"binary22.msh", LAVES_FORMAT_GMSH22, false, 0, true},
     {"ascii22.msh", LAVES_FORMAT_GMSH22, true, 0, true},   {"binary41.msh", LAVES_FORMAT_GMSH41, false, 0, true},
     {"ascii41.msh", LAVES_FORMAT_GMSH41, true, 0, true},   {"text.mesh", LAVES_FORMAT_MEDIT, true, 0, false},
     {"binary.meshb", LAVES_FORMAT_MEDIT, false, 0, false}, {"tetgen.node", LAVES_FORMAT_TETGEN, true, 0, false},
@@ -85,14 +85,18 @@ static void test_plain_round_trip(void **state) {
   laves_mesh_free(mesh);
 }
 
-static void assert_tags(const laves_mesh *mesh, bool names) {
+/* Gmsh's files want a name for everything; others keep those that there are. */
+static void assert_tags(const laves_mesh *mesh, bool names, bool all_names) {
   for (size_t i = 0; i < mesh->tet_count; i++)
     assert_int_equal(mesh->regions[i], fixture_cube_region(fixture_centroid(mesh, mesh->tets[i], 4)));
   for (size_t i = 0; i < mesh->face_count; i++)
     assert_int_equal(mesh->face_tags[i], fixture_cube_tag(fixture_centroid(mesh, mesh->faces[i], 3)));
   if (!names) return;
   assert_string_equal(laves_mesh_group_name(mesh, 3, 3), "lower half");
-  assert_string_equal(laves_mesh_group_name(mesh, 3, 7), "solid_7");
+  if (all_names)
+    assert_string_equal(laves_mesh_group_name(mesh, 3, 7), "solid_7");
+  else
+    assert_null(laves_mesh_group_name(mesh, 3, 7));
   assert_string_equal(laves_mesh_group_name(mesh, 2, 11), "x high");
 }
 
@@ -106,7 +110,7 @@ static void test_tagged_round_trip(void **state) {
     assert_int_equal(back->face_count, mesh->face_count);
     assert_non_null(back->regions);
     assert_non_null(back->face_tags);
-    assert_tags(back, kinds[k].names);
+    assert_tags(back, kinds[k].names, kinds[k].format != LAVES_FORMAT_VTU);
     assert_true(fixture_volume(back) > 1 - 1e-12 && fixture_volume(back) < 1 + 1e-12);
     laves_mesh_free(back);
   }
@@ -114,6 +118,46 @@ static void test_tagged_round_trip(void **state) {
 }
 
 /* ---- other programs' files, by hand ---- */
+
+/* Names that XML would take for markup; one for a region and a tag; and the sources of faces, which make triangles cells. */
+static void test_names_and_sources_in_vtu(void **state) {
+  fixture *f = *state;
+  laves_mesh *mesh = fixture_tagged_cube(f->context, 2);
+  assert_true(laves__mesh_add_group(mesh, 3, 7, "<a & \"b\">"));
+  assert_true(laves__mesh_add_group(mesh, 2, 12, "<a & \"b\">"));
+  assert_true(laves__mesh_add_group(mesh, 2, 13, "\xc3\xa9t\xc3\xa9"));
+  mesh->face_sources = laves__alloc(f->context, mesh->face_count, sizeof *mesh->face_sources);
+  for (size_t i = 0; i < mesh->face_count; i++) mesh->face_sources[i] = (int32_t)i - 1;
+  for (size_t k = 0; kinds[k].format == LAVES_FORMAT_VTU; k++) {
+    write_kind(f, mesh, k);
+    laves_mesh *back = read_back(f);
+    assert_string_equal(laves_mesh_group_name(back, 3, 7), "<a & \"b\">");
+    assert_string_equal(laves_mesh_group_name(back, 2, 12), "<a & \"b\">");
+    assert_string_equal(laves_mesh_group_name(back, 2, 13), "\xc3\xa9t\xc3\xa9");
+    assert_string_equal(laves_mesh_group_name(back, 3, 3), "lower half");
+    laves_mesh_free(back);
+  }
+  laves_mesh_free(mesh);
+}
+
+/* Sources are written for triangles, -1 for tets, even where there are no tags. */
+static void test_sources_without_tags(void **state) {
+  fixture *f = *state;
+  laves_mesh *mesh = fixture_plain_cube(f->context, 1);
+  mesh->face_sources = laves__alloc(f->context, mesh->face_count, sizeof *mesh->face_sources);
+  for (size_t i = 0; i < mesh->face_count; i++) mesh->face_sources[i] = 100 + (int32_t)i;
+  write_kind(f, mesh, 2);
+  laves_mesh_free(mesh);
+  FILE *file = fopen(f->path, "rb");
+  char text[20000];
+  assert_non_null(file);
+  text[fread(text, 1, sizeof text - 1, file)] = 0;
+  fclose(file);
+  const char *array = strstr(text, "Name=\"source_face\"");
+  assert_non_null(array);
+  assert_non_null(strstr(array, "-1 -1 -1 -1 -1 -1 100 101 102 103 104 105\n106 107 108 109 110 111 \n"));
+  assert_non_null(strstr(text, "NumberOfCells=\"18\""));
+}
 
 static void write_text(fixture *f, const char *name, const char *text) {
   set_path(f, name);
@@ -287,6 +331,8 @@ int main(void) {
       cmocka_unit_test_setup_teardown(test_plain_round_trip, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_tagged_round_trip, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_ten_node_tet_and_sparse_numbers, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_names_and_sources_in_vtu, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_sources_without_tags, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_base64_vtu, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_tetgen_from_one, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_refused, set_up, tear_down),

@@ -44,8 +44,36 @@ static void labels_become_tags(void **state) {
   assert_tag_names(TEXT_FILE("x", "ply\nformat ascii 1.0\n" VERTEX "element face 4\nproperty uchar region\n"
                                   "property list uchar int vertex_indices\nproperty int label\nend_header\n"
                                   "0 0 0\n1 0 0\n1 1 0\n0 1 0\n7 3 0 1 2 0\n7 4 0 1 2 3 1\n2 3 1 2 3 2\n7 3 2 3 0 3"),
-                   "region 7,region 7,region 7,region 2,region 7");
+                   "label 0,label 1,label 1,label 2,label 3");
   assert_tag_names(TEXT_FILE("x", ASCII_FILE), "");
+}
+
+#define TWO_FACES(properties, first, second) "ply\n" TWO_FACES_AFTER_PLY(properties, first, second)
+#define TWO_FACES_AFTER_PLY(properties, first, second)                                              \
+  "format ascii 1.0\n" VERTEX "element face 2\nproperty list uchar int vertex_indices\n" properties \
+  "end_header\n"                                                                                    \
+  "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 " first "\n3 0 2 3 " second "\n"
+
+/* Whatever it is called, the only integer of a face is its label, but for colours and flags. */
+static void any_integer_may_be_the_label(void **state) {
+  (void)state;
+  assert_tag_names(TEXT_FILE("x", TWO_FACES("property int body\n", "4", "5")), "body 4,body 5");
+  assert_tag_names(TEXT_FILE("x", TWO_FACES("property uchar red\nproperty uint flags\nproperty short Zone\n", "9 9 4", "9 9 5")),
+                   "Zone 4,Zone 5");
+  assert_tag_names(TEXT_FILE("x", TWO_FACES("property uchar red\nproperty uchar green\nproperty uchar blue\n", "1 2 3", "4 5 6")),
+                   "");
+  assert_tag_names(TEXT_FILE("x", TWO_FACES("property float label\n", "1", "2")), "");
+  /* Comments name the values of "label". */
+  assert_tag_names(TEXT_FILE("x",
+                             "ply\ncomment label 5 the inlet  \ncomment label 4\ncomment label 5 other\n"
+                             "comment labels 4 x\n" TWO_FACES_AFTER_PLY("property int label\n", "4", "5")),
+                   "label 4,the inlet");
+  assert_tag_names(TEXT_FILE("x", "ply\ncomment label 5 inlet\n" TWO_FACES_AFTER_PLY("property int tag\n", "4", "5")),
+                   "tag 4,tag 5");
+  /* Of two unknown ones neither is meant; of known ones the first of the list counts. */
+  assert_tag_names(TEXT_FILE("x", TWO_FACES("property int a1\nproperty int b1\n", "1 2", "3 4")), "");
+  assert_tag_names(TEXT_FILE("x", TWO_FACES("property int object\nproperty int material\n", "1 2", "3 4")),
+                   "material 2,material 4");
 }
 
 static void strips_become_triangles(void **state) {
@@ -187,6 +215,7 @@ int main(void) {
       cmocka_unit_test(text_is_read),
       cmocka_unit_test(strangers_are_passed_over),
       cmocka_unit_test(labels_become_tags),
+      cmocka_unit_test(any_integer_may_be_the_label),
       cmocka_unit_test(strips_become_triangles),
       cmocka_unit_test(binaries_are_read),
       cmocka_unit_test(lone_cr_before_lf_is_no_pair),
