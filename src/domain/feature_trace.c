@@ -1,0 +1,368 @@
+/* One crease, followed from a point of it to its ends.
+ *
+ * A step goes along the tangent and then, by the shortest way, back to where both functions vanish; it is as long as the
+ * chord stays near the crease. At every point the sides are looked at: a convex edge is where the solid is the larger of the
+ * two functions, a notch where it is the smaller.
+ *
+ *         d_s  <--+--> s            n_s, n_t the normals; d_s points along face s, away from t's side. At a convex edge s
+ *                 |                 goes on the other way, at a notch this way.
+ *                 t
+ *
+ * Where that ends, a third function has taken over. Halving finds the place, and the functions found around it give the corner
+ * as the point where three vanish. Where the third continues one of the two smoothly the crease goes on with it. */
+#include <string.h>
+
+#include "domain/elementary.h"
+#include "domain/feature_implicit.h"
+
+/* All steps of all creases; far more than any mesh could follow. */
+enum { PIECE_LIMIT = 2000000 };
+/* Around an end so many functions are looked at, and so many times in a row may a crease go on with another one. */
+enum { RIVAL_LIMIT = 16, CHANGE_LIMIT = 64 };
+/* Cosine of the angle by which the tangent may turn in a step. */
+static const double least_cosine = 0.9;
+/* Probed values that differ by less than this part of what a face's turning makes over the probe are equal. */
+static const double equal_part = 1e-3;
+/* A crease goes on with another function if that turns the normals by less than this (sine of 3 degrees). */
+static const double smooth_turn = 0.052;
+/* Distances around an end, in probes: where rivals are looked for, how far a corner or what goes on may lie, how far ahead
+ * a crease is picked up again. */
+static const double rival_radius = 6, corner_reach = 64, ahead = 16;
+
+static const double degrees = 57.29577951308232;
+
+/* ---- how branches meet ---- */
+
+static const laves__tape *tape_of(const laves__crease_search *s, int32_t branch) { return &s->all->branches.tape[branch]; }
+
+laves__meeting laves__branches_meet(const laves__crease_search *s, laves__vec3 p, const int32_t branch[2], laves__vec3 normal[2],
+                                    double *turn) {
+  double slope[2];
+  for (int i = 0; i < 2; i++) {
+    const laves__dual at = laves__tape_gradient(tape_of(s, branch[i]), p);
+    slope[i] = v3_norm(at.gradient);
+    normal[i] = v3_unit(at.gradient);
+  }
+  const double cosine = v3_dot(normal[0], normal[1]), sine = v3_norm(v3_cross(normal[0], normal[1]));
+  *turn = degrees * laves__angle(sine, cosine);
+  if (!(slope[0] > 0 && slope[1] > 0 && sine > 1e-6)) return LAVES__NOT_MET;
+  laves__vec3 probes[4]; /* on face 0 before and beyond the crease, on face 1 before and beyond */
+  double phi[4], own[4];
+  for (int i = 0; i < 2; i++) {
+    const laves__vec3 beyond = v3_scale(v3_mad(normal[1 - i], normal[i], -cosine), s->probe / sine);
+    probes[2 * i] = v3_sub(p, beyond);
+    probes[2 * i + 1] = v3_add(p, beyond);
+    laves__tape_evaluate(tape_of(s, branch[i]), 2, probes + 2 * i, own + 2 * i);
+  }
+  laves__tape_evaluate(s->all->solid.tape, 4, probes, phi);
+  const double equal = equal_part * s->probe * sine * min_of(slope[0], slope[1]);
+  const bool before = fabs(phi[0] - own[0]) <= equal && fabs(phi[2] - own[2]) <= equal;
+  const bool beyond = fabs(phi[1] - own[1]) <= equal && fabs(phi[3] - own[3]) <= equal;
+  if (before == beyond) return LAVES__NOT_MET;
+  if (before) return phi[1] > own[1] && phi[3] > own[3] ? LAVES__CONVEX : LAVES__NOT_MET;
+  return phi[0] < own[0] && phi[2] < own[2] ? LAVES__CONCAVE : LAVES__NOT_MET;
+}
+
+/* ---- points of a crease ---- */
+
+typedef struct spot {
+  laves__vec3 p, tangent; /* the first branch is on the left along the tangent */
+  laves__vec3 normal[2];
+  int32_t branch[2];
+  laves__meeting meeting;
+  double turn; /* between the normals, degrees */
+  uint32_t point;
+} spot;
+
+static double inner_angle(const spot *a) { return a->meeting == LAVES__CONVEX ? 180 - a->turn : 180 + a->turn; }
+
+/* Seen from outside, the face of n is left of n x m where that face ends at a convex edge, right of it at a notch. */
+static void look_around(const laves__crease_search *s, spot *a) {
+  a->meeting = laves__branches_meet(s, a->p, a->branch, a->normal, &a->turn);
+  const laves__vec3 along = v3_unit(v3_cross(a->normal[0], a->normal[1]));
+  a->tangent = a->meeting == LAVES__CONCAVE ? v3_scale(along, -1) : along;
+}
+
+static bool put_on_crease(const laves__crease_search *s, const int32_t branch[2], double reach, laves__vec3 *p) {
+  const laves__tape *f[2] = {tape_of(s, branch[0]), tape_of(s, branch[1])};
+  return laves__tapes_meet(f, 2, s->all->solid.diagonal, reach, p);
+}
+
+typedef enum outcome { WENT, TOO_LONG, ENDED, FADED } outcome;
+
+/* A step of length h, along the tangent for way = 1, against it for -1. */
+static outcome advance(const laves__crease_search *s, const spot *from, double way, double h, spot *to) {
+  *to = *from;
+  const laves__vec3 ahead_of = v3_scale(from->tangent, way);
+  to->p = v3_mad(from->p, ahead_of, h);
+  if (!put_on_crease(s, from->branch, 0.5 * h, &to->p)) return TOO_LONG;
+  if (v3_dot(v3_sub(to->p, from->p), ahead_of) < 0.5 * h) return TOO_LONG;
+  look_around(s, to);
+  if (to->meeting == LAVES__NOT_MET && from->meeting == LAVES__CONCAVE) to->tangent = v3_scale(to->tangent, -1);
+  if (v3_dot(to->tangent, from->tangent) < least_cosine) return to->meeting == from->meeting ? TOO_LONG : ENDED;
+  if (h * v3_distance(to->tangent, from->tangent) > 8 * s->sagitta) return TOO_LONG; /* of an arc: h turn / 8 */
+  if (to->meeting != from->meeting) return ENDED;
+  return to->turn < s->wish->angle ? FADED : WENT;
+}
+
+/* ---- what has been found ---- */
+
+static bool add_piece(laves__crease_search *s, const spot *a, const spot *b) {
+  laves__implicit_features *all = s->all;
+  const laves__crease_piece piece = {.ends = {a->p, b->p},
+                                     .points = {a->point, b->point},
+                                     .branch = {a->branch[0], a->branch[1]},
+                                     .angle = 0.5 * (inner_angle(a) + inner_angle(b))};
+  const size_t count = all->piece_grid.count;
+  if (!laves__grow(s->context, &all->piece, &all->piece_capacity, count + 1, sizeof piece) ||
+      !laves__point_grid_add(&all->piece_grid, v3_lerp(a->p, b->p, 0.5))) {
+    s->out_of_memory = true;
+    return false;
+  }
+  all->piece[count] = piece;
+  return true;
+}
+
+/* The piece between two spots, of which `to` was reached in direction `way`. */
+static bool add_step(laves__crease_search *s, const spot *from, const spot *to, double way) {
+  return way > 0 ? add_piece(s, from, to) : add_piece(s, to, from);
+}
+
+static bool add_point(laves__crease_search *s, spot *a) {
+  if (laves__feature_lines_add_point(s->lines, a->p, &a->point)) return true;
+  s->out_of_memory = true;
+  return false;
+}
+
+typedef struct piece_question {
+  const laves__implicit_features *all;
+  laves__vec3 p;
+  int32_t a, b; /* roots */
+  double distance2;
+  uint32_t best;
+} piece_question;
+
+static double distance2_to_piece(const laves__crease_piece *c, laves__vec3 p) {
+  const laves__vec3 along = v3_sub(c->ends[1], c->ends[0]);
+  const double length2 = v3_norm2(along), t = length2 > 0 ? v3_dot(v3_sub(p, c->ends[0]), along) / length2 : 0;
+  return v3_norm2(v3_sub(p, v3_mad(c->ends[0], along, min_of(max_of(t, 0), 1))));
+}
+
+static void measure_piece(void *user, uint32_t index) {
+  piece_question *q = user;
+  const laves__crease_piece *c = &q->all->piece[index];
+  const double distance2 = distance2_to_piece(c, q->p);
+  if (distance2 > q->distance2 || (distance2 == q->distance2 && index >= q->best)) return;
+  const int32_t l = laves__branch_root(q->all, c->branch[0]), r = laves__branch_root(q->all, c->branch[1]);
+  if (!(l == q->a && r == q->b) && !(l == q->b && r == q->a)) return;
+  q->distance2 = distance2;
+  q->best = index;
+}
+
+uint32_t laves__piece_near(const laves__implicit_features *all, laves__vec3 p, double reach, int32_t a, int32_t b) {
+  piece_question q = {all, p, laves__branch_root(all, a), laves__branch_root(all, b), reach * reach, LAVES__NONE};
+  laves__point_grid_near(&all->piece_grid, p, measure_piece, &q);
+  return q.best;
+}
+
+typedef struct corner_question {
+  const laves__crease_search *s;
+  laves__vec3 p;
+  double distance;
+  uint32_t best;
+} corner_question;
+
+static void measure_corner(void *user, uint32_t index) {
+  corner_question *q = user;
+  const double distance = v3_distance(q->s->corner_grid.at[index], q->p);
+  if (distance > q->distance || (distance == q->distance && index >= q->best)) return;
+  q->distance = distance;
+  q->best = index;
+}
+
+bool laves__corner_add(laves__crease_search *s, laves__vec3 p, uint32_t *point) {
+  corner_question q = {s, p, 8 * s->probe, LAVES__NONE};
+  laves__point_grid_near(&s->corner_grid, p, measure_corner, &q);
+  if (q.best != LAVES__NONE) {
+    *point = s->corner_point[q.best];
+    return true;
+  }
+  const size_t count = s->corner_grid.count;
+  s->out_of_memory = !laves__grow(s->context, &s->corner_point, &s->corner_capacity, count + 1, sizeof *s->corner_point) ||
+                     !laves__feature_lines_add_point(s->lines, p, point) || !laves__point_grid_add(&s->corner_grid, p);
+  if (!s->out_of_memory) s->corner_point[count] = *point;
+  return !s->out_of_memory;
+}
+
+/* ---- ends ---- */
+
+/* Branches that make the surface around a place: feet of points around it, in the 26 directions of a cube. */
+static int find_rivals(laves__crease_search *s, laves__vec3 c, int32_t *rival) {
+  int count = 0;
+  for (int k = 0; k < 27; k++) {
+    const laves__vec3 direction = v3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+    laves__vec3 foot;
+    laves__dual there;
+    const laves__vec3 from = v3_mad(c, v3_unit(direction), rival_radius * s->probe);
+    if (!laves__tape_foot(s->all->solid.tape, s->all->solid.diagonal, from, 2 * rival_radius * s->probe, &foot, &there)) continue;
+    laves__vec3 normal = v3_unit(there.gradient);
+    const int32_t b = laves__branch_of_foot(s, &s->all->whole, foot, &normal, 0.25 * s->probe);
+    bool known = b == LAVES__NO_BRANCH;
+    for (int i = 0; i < count && !known; i++) known = rival[i] == b;
+    if (!known && count < RIVAL_LIMIT) rival[count++] = b;
+  }
+  return count;
+}
+
+/* The point near the end where a third function vanishes as well. */
+static bool find_corner(const laves__crease_search *s, const spot *last, const int32_t *rival, int count, laves__vec3 *corner) {
+  const double reach = corner_reach * s->probe, diagonal = s->all->solid.diagonal;
+  double least = INFINITY;
+  for (int i = 0; i < count; i++) {
+    if (rival[i] == last->branch[0] || rival[i] == last->branch[1]) continue;
+    const laves__tape *f[3] = {tape_of(s, last->branch[0]), tape_of(s, last->branch[1]), tape_of(s, rival[i])};
+    const laves__vec3 normal = v3_unit(laves__tape_gradient(f[2], last->p).gradient);
+    if (fabs(v3_dot(normal, last->tangent)) < smooth_turn) continue; /* touches the crease, if at all */
+    laves__vec3 p = last->p;
+    double phi;
+    if (!laves__tapes_meet(f, 3, diagonal, reach, &p)) continue;
+    laves__tape_evaluate(s->all->solid.tape, 1, &p, &phi);
+    const double distance = v3_distance(p, last->p);
+    if (fabs(phi) > 1e-9 * diagonal || distance >= least) continue;
+    least = distance;
+    *corner = p;
+  }
+  return least < INFINITY;
+}
+
+/* Picks the crease up again, with other functions that continue those of `last` smoothly. */
+static bool find_continuation(const laves__crease_search *s, const spot *last, double way, const int32_t *rival, int count,
+                              spot *next) {
+  double least = 2 * smooth_turn;
+  for (int i = -1; i < count; i++)
+    for (int j = -1; j < count; j++) {
+      spot a = *last;
+      if (i >= 0) a.branch[0] = rival[i];
+      if (j >= 0) a.branch[1] = rival[j];
+      if ((i < 0 && j < 0) || a.branch[0] == a.branch[1]) continue;
+      a.p = v3_mad(last->p, last->tangent, way * ahead * s->probe);
+      if (!put_on_crease(s, a.branch, 0.5 * ahead * s->probe, &a.p)) continue;
+      look_around(s, &a);
+      if (a.meeting != last->meeting || a.turn < s->wish->angle) continue;
+      const double turn0 = v3_distance(a.normal[0], last->normal[0]), turn1 = v3_distance(a.normal[1], last->normal[1]);
+      if (turn0 > smooth_turn || turn1 > smooth_turn || turn0 + turn1 >= least) continue;
+      least = turn0 + turn1;
+      *next = a;
+    }
+  return least < 2 * smooth_turn;
+}
+
+/* The last spot before the end that a step of length h has passed. */
+static spot find_end(const laves__crease_search *s, const spot *from, double way, double h) {
+  spot last = *from, trial;
+  double sure = 0;
+  while (h - sure > 0.5 * s->probe) {
+    const double middle = 0.5 * (sure + h);
+    if (advance(s, from, way, middle, &trial) == WENT) {
+      sure = middle;
+      last = trial;
+    } else {
+      h = middle;
+    }
+  }
+  return last;
+}
+
+/* ---- following ---- */
+
+static void join_sides(laves__crease_search *s, const spot *a, const spot *b) {
+  for (int i = 0; i < 2; i++) laves__branches_join(s->all, a->branch[i], b->branch[i]);
+}
+
+/* Ends a crease, or goes on with other functions: then true, and `here` is the first spot of them. */
+static bool pass_end(laves__crease_search *s, spot *here, double way, double h) {
+  spot last = find_end(s, here, way, h), next;
+  int32_t rival[RIVAL_LIMIT];
+  const int count = find_rivals(s, v3_mad(last.p, last.tangent, 2 * way * s->probe), rival);
+  laves__vec3 corner;
+  if (find_corner(s, &last, rival, count, &corner)) {
+    if (!laves__corner_add(s, corner, &last.point)) return false;
+    last.p = s->lines->point[last.point];
+    if (last.point != here->point) add_step(s, here, &last, way);
+    return false;
+  }
+  if (find_continuation(s, &last, way, rival, count, &next) && add_point(s, &next)) {
+    join_sides(s, &last, &next);
+    spot end = *here; /* the piece has the functions that it started with */
+    end.p = next.p;
+    end.point = next.point;
+    if (!add_step(s, here, &end, way)) return false;
+    *here = next;
+    return true;
+  }
+  if (v3_distance(last.p, here->p) > s->probe && add_point(s, &last)) add_step(s, here, &last, way);
+  return false;
+}
+
+/* Whether the next step leads back to the start; then the piece that does is added. */
+static bool close_ring(laves__crease_search *s, const spot *here, double way, double h, const spot *start) {
+  const laves__vec3 rest = v3_sub(start->p, here->p);
+  const double length = v3_norm(rest);
+  spot there;
+  if (length > 1.5 * h || v3_dot(rest, here->tangent) * way < 0.5 * length) return false;
+  if (advance(s, here, way, length, &there) != WENT || v3_distance(there.p, start->p) > 0.05 * length) return false;
+  spot end = *start;
+  end.branch[0] = here->branch[0];
+  end.branch[1] = here->branch[1];
+  if (way < 0) { /* the piece takes the functions of its first spot */
+    spot from = *here;
+    return add_piece(s, &end, &from), true;
+  }
+  return add_piece(s, here, &end), true;
+}
+
+/* True when the crease closed. */
+static bool follow(laves__crease_search *s, const spot *start, double way) {
+  spot here = *start, there;
+  double h = s->step;
+  int steps = 0, changes = 0;
+  while (laves__search_goes_on(s) && s->all->piece_grid.count < PIECE_LIMIT) {
+    if (steps > 2 && close_ring(s, &here, way, h, start)) return true;
+    outcome o = advance(s, &here, way, h, &there);
+    if ((o == TOO_LONG && h > 4 * s->probe) || (o == FADED && h > s->step / 16)) {
+      h *= 0.5;
+      continue;
+    }
+    if (o == FADED) {
+      laves__branches_join(s->all, here.branch[0], here.branch[1]);
+      return false;
+    }
+    if (o != WENT) {
+      if (changes++ == CHANGE_LIMIT || !pass_end(s, &here, way, h)) return false;
+      h = s->step;
+      steps++;
+      continue;
+    }
+    if (!add_point(s, &there) || !add_step(s, &here, &there, way)) return false;
+    const bool straight = h * v3_distance(there.tangent, here.tangent) < 2 * s->sagitta;
+    here = there;
+    if (straight) h = min_of(2 * h, s->step);
+    steps++;
+    changes = 0;
+  }
+  return false;
+}
+
+void laves__crease_trace(laves__crease_search *s, laves__vec3 start, int32_t a, int32_t b) {
+  spot first = {.p = start, .branch = {a, b}};
+  if (!put_on_crease(s, first.branch, s->all->size, &first.p)) return;
+  look_around(s, &first);
+  if (first.meeting == LAVES__NOT_MET) return;
+  if (first.turn < s->wish->angle) {
+    laves__branches_join(s->all, a, b);
+    return;
+  }
+  if (laves__piece_near(s->all, first.p, 4 * s->sagitta, a, b) != LAVES__NONE) return;
+  if (!add_point(s, &first)) return;
+  if (!follow(s, &first, 1)) follow(s, &first, -1);
+}

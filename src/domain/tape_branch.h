@@ -1,0 +1,93 @@
+/* Branches of a tape: the smooth functions that a solid is made of.
+ *
+ * Minima, maxima and absolute values make the kinks of an expression. At a point each of them takes one side; what the value
+ * depends on there, found by walking from the result down, is the point's SIGNATURE: instructions reached, and their choices.
+ * Floors count as choices of an integer, and the norm of a vector with one component other than zero as the choice of
+ * that component and its sign: outside a box, near a face, |(q, 0, 0)| is q, and so is smooth across the face.
+ *
+ *      max(a, min(b, c)) where a < b < c:     max takes its second operand, min its first; the branch is b
+ *
+ * With all choices held fast the expression is smooth all over: the BRANCH, compiled to a tape of its own. Signatures that
+ * give the same expression (max(a, max(b, c)) has two ways to yield a) are the same branch.
+ *
+ * On boxes, intervals decide many choices at once. A CODE is the tape with what is decided cut away, down to the
+ * few instructions that matter in the box: after Matthew Keeter, "Massively parallel rendering of complex closed-form
+ * implicit surfaces", ACM Trans. Graph. 39(4), 2020, section 3 (there: tape pruning). */
+#ifndef LAVES_DOMAIN_TAPE_BRANCH_H
+#define LAVES_DOMAIN_TAPE_BRANCH_H
+
+#include "domain/tape.h"
+
+/* No branch known. */
+#define LAVES__NO_BRANCH (-1)
+
+/* What a store holds at most: branches, signatures, choices of all signatures, instructions of all branches (24 MB). A solid
+ * that has more keeps those met first. */
+enum {
+  LAVES__BRANCH_LIMIT = 16384,
+  LAVES__SIGNATURE_LIMIT = 131072,
+  LAVES__CHOICE_LIMIT = 1 << 23,
+  LAVES__BRANCH_CODE_LIMIT = 1 << 20
+};
+
+/* ---- codes ---- */
+
+typedef struct laves__code {
+  laves__tape tape;  /* instructions: [capacity] */
+  uint32_t *origin;  /* [capacity] instruction of the whole tape that each stands for */
+  int32_t *made;     /* [capacity] its choice where intervals decided it, else 0 */
+  size_t capacity;   /* of all three */
+  size_t open_count; /* choices that are not decided, and norms that may vanish */
+} laves__code;
+
+/* The whole tape as a code. False when memory is short. */
+bool laves__code_whole(laves_context *context, const laves__tape *tape, laves__code *code);
+/* Cuts `code` down to what matters in the box; `cut` is overwritten and grows as needed. False when memory is short.
+ * results: scratch of [code->tape.count]. */
+bool laves__code_cut(laves_context *context, const laves__code *code, laves__box3 box, laves__interval *results,
+                     laves__code *cut);
+void laves__code_free(laves_context *context, laves__code *code);
+
+/* ---- signatures ---- */
+
+typedef struct laves__choice {
+  uint32_t instruction; /* of the whole tape */
+  int32_t side;         /* never 0. MIN, MAX: 1 or 2, the operand; ABS: 1 positive, 2 negative; floors: n + 1, or n < 0 */
+} laves__choice;
+
+typedef struct laves__signature {
+  laves__choice *choices; /* instructions descending */
+  size_t count;
+} laves__signature;
+
+/* The signature at a point where `code` is valid. room: [code->tape.count] for the choices. */
+void laves__signature_at(const laves__tape *whole, const laves__code *code, laves__vec3 point, laves__choice *room,
+                         laves__signature *signature);
+
+/* ---- the store ---- */
+
+typedef struct laves__branches {
+  laves_context *context;
+  const laves__tape *whole; /* not owned */
+  laves__expression expression;
+  laves__tape *tape; /* of each branch */
+  laves__node *root; /* and its node in `expression` */
+  size_t count, tape_capacity, root_capacity, code_total;
+  struct laves__known_signature *known;
+  size_t known_count, known_capacity;
+  laves__choice *pool;
+  size_t pool_count, pool_capacity;
+  uint32_t *table; /* open addressing: signature + 1 */
+  size_t table_size;
+  bool out_of_memory;
+} laves__branches;
+
+void laves__branches_init(laves__branches *b, laves_context *context, const laves__tape *whole);
+void laves__branches_free(laves__branches *b);
+
+/* The branch of a signature, or LAVES__NO_BRANCH when it has not been met. Read only. */
+int32_t laves__branches_find(const laves__branches *b, const laves__signature *signature);
+/* The same; one not met yet is added. LAVES__NO_BRANCH when the store is full, or memory short (then out_of_memory). */
+int32_t laves__branches_add(laves__branches *b, const laves__signature *signature);
+
+#endif
