@@ -1,7 +1,7 @@
 /* The search for borders between branches.
  *
  * An octree down to the wished size; intervals drop cells that the surface misses, and cut the tape to what matters in
- * twice the cell. Where no choice is left open there is one branch and nothing to find. In the smallest cells that are
+ * and around the cell. Where no choice is left open there is one branch and nothing to find. In the smallest cells that are
  * left, a few points are put on the surface; each tells its branch. Between feet of different branches halving finds
  * the border: smooth, and the branches are one patch, or sharp, and a crease is followed from there. */
 #include <string.h>
@@ -10,9 +10,14 @@
 #include "domain/feature_implicit.h"
 
 /* Feet are looked for from the middle of a cell and from eight points around it. */
-enum { FEET = 9, BISECTION_LIMIT = 40, TIP_DIRECTIONS = 26 };
+enum { FEET = 9, BESIDE = 6, LOOKED = 2, FEET_MAX = FEET + LOOKED * BESIDE, ROUNDS = 4, BISECTION_LIMIT = 40, TIP_DIRECTIONS = 26 };
+/* How far beyond a cell codes are valid and feet are taken, in widths; and how near to the surface (parts of the diagonal) a foot
+ * must be for its branch to be told, which is looked at a thousand times deeper. */
+static const double margin = 0.25, near_enough = 1e-9;
 /* The eight points' place between the middle (0) and the cell's corners (1). */
 static const double spread = 0.75;
+/* How far beside a foot that tells nothing others are looked for, in widths of the cell and its surroundings. */
+static const double beside = 0.1;
 /* Feet of different branches closer than this part of the size lie on both sides of their border. */
 static const double adjacent = 1e-3;
 /* Smooth borders that are known are not looked at where normals turn by less than this part of the wished angle. */
@@ -75,11 +80,20 @@ bool laves__branch_passes(const laves__tape *f, laves__vec3 foot, double depth, 
   return fabs(phi + depth * slope) <= unlike * depth * slope;
 }
 
+/* Whether the solid is on one side of a foot only: parts that touch, face to face, have none of it between them. */
+static bool parts_space(const laves__tape *solid, laves__vec3 foot, laves__vec3 normal, double depth) {
+  const laves__vec3 sides[2] = {v3_mad(foot, normal, -depth), v3_mad(foot, normal, depth)};
+  double phi[2];
+  laves__tape_evaluate(solid, 2, sides, phi);
+  return phi[0] < 0 && phi[1] > 0;
+}
+
 /* Inside first; where the function there does not pass through the foot (a rounded corner that only the outside of a box
  * has, met within the depth of its edge) the outside is asked. */
 int32_t laves__branch_of_foot(laves__crease_search *s, const laves__code *code, laves__vec3 foot, laves__vec3 *normal,
                               double depth) {
   laves__branches *branches = &s->all->branches;
+  if (!parts_space(&code->tape, foot, *normal, depth)) return LAVES__NO_BRANCH;
   for (int side = -1; side <= 1; side += 2) {
     laves__signature signature;
     laves__signature_at(branches->whole, code, v3_mad(foot, *normal, side * depth), s->room, &signature);
@@ -98,7 +112,7 @@ int32_t laves__branch_of_foot(laves__crease_search *s, const laves__code *code, 
 
 /* ---- borders ---- */
 
-static bool find_foot(laves__crease_search *s, const laves__code *code, laves__vec3 from, double reach, labelled_foot *found) {
+static bool find_foot(const laves__crease_search *s, const laves__code *code, laves__vec3 from, double reach, labelled_foot *found) {
   laves__dual there;
   if (!laves__tape_foot(&code->tape, s->all->solid.diagonal, from, reach, &found->p, &there)) return false;
   found->normal = v3_unit(there.gradient);
@@ -180,24 +194,28 @@ static bool find_tip(laves__crease_search *s, const laves__tape *tape, size_t k,
   laves__instruction room[3];
   laves__tape part[3];
   const laves__tape *f[3] = {&part[0], &part[1], &part[2]};
-  const bool plane = tape->instructions[k].op == LAVES__OP_NORM2;
-  for (int i = 0; i < 2 + !plane; i++) {
-    if (tape->instructions[k].operand[i] == LAVES__OPERAND_CONSTANT) return false;
+  const laves__instruction *norm = &tape->instructions[k];
+  const double diagonal = s->all->solid.diagonal, reach = 2 * s->all->size;
+  int count = norm->op == LAVES__OP_SQRT ? 1 : laves__op_operands[norm->op];
+  for (int i = 0; i < count && norm->op != LAVES__OP_SQRT; i++) {
+    if (norm->operand[i] == LAVES__OPERAND_CONSTANT) return false;
     part[i] = operand_tape(tape, k, i, &room[i]);
   }
-  const double reach = 2 * s->all->size;
-  if (!plane) return laves__tapes_meet(f, 3, s->all->solid.diagonal, reach, p);
+  if (count == 3) return laves__tapes_meet(f, 3, diagonal, reach, p);
+  if (count == 1) { /* a root's own slope leads straight to where it vanishes */
+    part[0] = *tape;
+    part[0].count = k + 1;
+  }
   laves__instruction *copy = laves__alloc(s->context, tape->count, sizeof *copy);
   if (!copy) {
     s->out_of_memory = true;
     return false;
   }
   memcpy(copy, tape->instructions, tape->count * sizeof *copy);
-  copy[k] = (laves__instruction){
-      .op = LAVES__OP_MUL, .out = tape->instructions[k].out, .operand = {0, LAVES__OPERAND_CONSTANT, 0}, .constant = 0};
-  part[2] = *tape;
-  part[2].instructions = copy;
-  const bool found = laves__tapes_meet(f, 3, s->all->solid.diagonal, reach, p);
+  copy[k] = (laves__instruction){.op = LAVES__OP_MUL, .out = norm->out, .operand = {0, LAVES__OPERAND_CONSTANT, 0}};
+  part[count] = *tape;
+  part[count].instructions = copy;
+  const bool found = laves__tapes_meet(f, count + 1, diagonal, reach, p);
   laves__free(s->context, copy, tape->count, sizeof *copy);
   return found;
 }
@@ -214,7 +232,7 @@ static void find_tips(laves__crease_search *s, laves__box3 around, int32_t branc
   const laves__vec3 c = box3_centre(around);
   for (size_t k = 0; k < tape.count; k++) {
     const uint16_t op = tape.instructions[k].op;
-    if (op != LAVES__OP_NORM2 && op != LAVES__OP_NORM3) continue;
+    if (op != LAVES__OP_NORM2 && op != LAVES__OP_NORM3 && op != LAVES__OP_SQRT) continue;
     laves__tape norm = tape;
     norm.count = k + 1;
     const laves__dual at = laves__tape_gradient(&norm, c);
@@ -235,9 +253,10 @@ static void find_tips(laves__crease_search *s, laves__box3 around, int32_t branc
 
 /* ---- cells ---- */
 
-static laves__box3 twice(laves__box3 cell) {
-  const laves__vec3 half = v3_scale(v3_sub(cell.upper, cell.lower), 0.5);
-  return (laves__box3){v3_sub(cell.lower, half), v3_add(cell.upper, half)};
+/* A cell and what is around it. */
+static laves__box3 grown(laves__box3 cell) {
+  const laves__vec3 by = v3_scale(v3_sub(cell.upper, cell.lower), margin);
+  return (laves__box3){v3_sub(cell.lower, by), v3_add(cell.upper, by)};
 }
 
 static bool holds(laves__box3 box, laves__vec3 p) {
@@ -249,18 +268,75 @@ static bool holds(laves__box3 box, laves__vec3 p) {
 static bool see_branch(laves__crease_search *s, const laves__code *code, laves__box3 cell) {
   labelled_foot foot;
   const laves__vec3 c = box3_centre(cell);
-  return find_foot(s, code, c, v3_distance(c, cell.upper), &foot) && holds(twice(cell), foot.p) && label_foot(s, code, &foot);
+  return find_foot(s, code, c, v3_distance(c, cell.upper), &foot) && holds(grown(cell), foot.p) && label_foot(s, code, &foot);
 }
 
-static int find_feet(laves__crease_search *s, const laves__code *code, laves__box3 cell, labelled_foot *feet) {
+/* The middle, a tetrahedron of points around it, and the opposite one. */
+static void place_points(laves__box3 cell, laves__vec3 *points) {
+  static const int corner[FEET - 1] = {0, 3, 5, 6, 7, 4, 2, 1};
   const laves__vec3 c = box3_centre(cell), out = v3_scale(v3_sub(cell.upper, c), spread);
-  const laves__box3 around = twice(cell);
+  points[0] = c;
+  for (int k = 0; k < FEET - 1; k++) {
+    const int i = corner[k];
+    points[k + 1] = v3_add(c, v3(i & 1 ? out.x : -out.x, i & 2 ? out.y : -out.y, i & 4 ? out.z : -out.z));
+  }
+}
+
+/* Plain Newton steps, all points side by side; done[i]: the i-th is at the surface. */
+static void step_to_surface(const laves__crease_search *s, const laves__code *code, int count, double longest, laves__vec3 *p,
+                            laves__dual *at, bool *done) {
+  for (int round = 0;; round++) {
+    bool all_done = true;
+    for (int i = 0; i < count; i++) {
+      const double slope2 = v3_norm2(at[i].gradient);
+      done[i] = fabs(at[i].value) <= near_enough * s->all->solid.diagonal * sqrt(slope2) && slope2 > 0;
+      all_done = all_done && done[i];
+      if (!done[i] && round < ROUNDS && fabs(at[i].value) < longest * sqrt(slope2))
+        p[i] = v3_mad(p[i], at[i].gradient, -at[i].value / slope2);
+    }
+    if (all_done || round == ROUNDS) return;
+    laves__tape_gradients(&code->tape, (size_t)count, p, at);
+  }
+}
+
+/* Outside of a box points have feet on its edges, where no branch goes through; those around them tell. */
+static int look_beside(laves__crease_search *s, const laves__code *code, laves__box3 around, laves__vec3 foot,
+                       labelled_foot *feet) {
+  const double away = beside * (around.upper.x - around.lower.x);
   int count = 0;
-  for (int k = 0; k < FEET; k++) {
-    const laves__vec3 way = v3(k & 1 ? out.x : -out.x, k & 2 ? out.y : -out.y, k & 4 ? out.z : -out.z);
-    const laves__vec3 from = k == FEET - 1 ? c : v3_add(c, way);
-    if (!find_foot(s, code, from, 2 * v3_norm(out), &feet[count]) || !holds(around, feet[count].p)) continue;
-    count += label_foot(s, code, &feet[count]);
+  for (int k = 0; k < BESIDE; k++) {
+    laves__vec3 from = foot;
+    (&from.x)[k / 2] += k % 2 ? away : -away;
+    if (find_foot(s, code, from, 2 * away, &feet[count]) && holds(around, feet[count].p)) count += label_foot(s, code, &feet[count]);
+  }
+  return count;
+}
+
+/* Feet in and around a cell, with their branches: feet[FEET_MAX]. *smooth: the gradient turns so little over the cell that no crease is
+ * likely; then there are fewer. */
+static int find_feet(laves__crease_search *s, const laves__code *code, laves__box3 cell, labelled_foot *feet, bool *smooth) {
+  laves__vec3 start[FEET], p[FEET];
+  laves__dual at[FEET];
+  bool done[FEET];
+  const laves__box3 around = grown(cell);
+  const double reach = v3_distance(cell.lower, cell.upper);
+  place_points(cell, start);
+  memcpy(p, start, sizeof p);
+  laves__tape_gradients(&code->tape, FEET, p, at);
+  *smooth = true;
+  for (int i = 1; i < FEET && *smooth; i++) *smooth = turns_less(s, at[0].gradient, at[i].gradient, plainly_smooth);
+  const int tried = *smooth ? 1 + (FEET - 1) / 2 : FEET;
+  step_to_surface(s, code, tried, reach, p, at, done);
+  int count = 0, looked = 0;
+  for (int i = 0; i < tried; i++) {
+    labelled_foot *foot = &feet[count];
+    *foot = (labelled_foot){p[i], v3_unit(at[i].gradient), LAVES__NO_BRANCH};
+    if (!done[i] && !find_foot(s, code, start[i], reach, foot)) continue;
+    if (!holds(around, foot->p)) continue;
+    if (label_foot(s, code, foot))
+      count++;
+    else if (looked++ < LOOKED)
+      count += look_beside(s, code, around, foot->p, foot);
   }
   return count;
 }
@@ -305,13 +381,17 @@ static void cross_between(laves__crease_search *s, const laves__code *code, cons
   cross_border(s, code, best_a, best_b);
 }
 
+/* In smooth cells only branches are compared that are not known to be one patch. */
 static void search_cell(laves__crease_search *s, const laves__code *code, laves__box3 cell) {
-  labelled_foot feet[FEET];
-  const int count = find_feet(s, code, cell, feet), branches = sort_out(feet, count);
+  labelled_foot feet[FEET_MAX];
+  bool smooth;
+  const int count = find_feet(s, code, cell, feet, &smooth), branches = sort_out(feet, count);
   if (branches > 1) add_sites(s, feet, branches);
   for (int i = 0; i < branches; i++)
-    for (int j = 0; j < i && !s->out_of_memory; j++) cross_between(s, code, feet, count, feet[j].branch, feet[i].branch);
-  for (int i = 0; i < branches && !s->out_of_memory; i++) find_tips(s, twice(cell), feet[i].branch);
+    for (int j = 0; j < i && !s->out_of_memory; j++)
+      if (!smooth || laves__branch_root(s->all, feet[i].branch) != laves__branch_root(s->all, feet[j].branch))
+        cross_between(s, code, feet, count, feet[j].branch, feet[i].branch);
+  for (int i = 0; i < branches && code->norm_count > 0 && !s->out_of_memory; i++) find_tips(s, grown(cell), feet[i].branch);
 }
 
 /* How many of the smallest cells are searched at most; then cells twice as wide are taken. */
@@ -323,7 +403,7 @@ static void visit(laves__crease_search *s, laves__box3 cell, int level, int dept
   bool may_be_nan;
   const laves__interval value = laves__tape_interval(&code->tape, cell, &may_be_nan);
   if (!may_be_nan && (value.lower > 0 || value.upper < 0)) return;
-  if (!laves__code_cut(s->context, code, twice(cell), s->results, &s->level[level + 1])) {
+  if (!laves__code_cut(s->context, code, grown(cell), s->results, &s->level[level + 1])) {
     s->out_of_memory = true;
     return;
   }

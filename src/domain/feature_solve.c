@@ -70,6 +70,9 @@ static bool linearise(const laves__tape *const *f, int count, laves__vec3 p, lav
   for (int i = 0; i < count; i++) {
     const laves__dual at = laves__tape_gradient(f[i], p);
     const double slope = v3_norm(at.gradient);
+    n[i] = at.gradient;
+    d[i] = at.value;
+    if (at.value == 0 && slope == 0) continue; /* the tip of a root */
     if (!(slope > 0) || !isfinite(slope)) return false;
     n[i] = v3_scale(at.gradient, 1 / slope);
     d[i] = at.value / slope;

@@ -42,8 +42,10 @@ bool laves__code_whole(laves_context *context, const laves__tape *tape, laves__c
   for (size_t i = 0; i < tape->count; i++) {
     code->origin[i] = (uint32_t)i;
     code->made[i] = 0;
-    code->open_count += is_choice(tape->instructions[i].op) || is_norm(tape->instructions[i].op);
+    code->norm_count += is_norm(tape->instructions[i].op);
+    code->open_count += is_choice(tape->instructions[i].op);
   }
+  code->open_count += code->norm_count;
   return true;
 }
 
@@ -131,7 +133,7 @@ bool laves__code_cut(laves_context *context, const laves__code *code, laves__box
   if (may_be_nan) memcpy(cut->made, code->made, count * sizeof *cut->made); /* comparisons with NaN follow no interval */
   memset(live, 0, code->tape.register_count * sizeof *live);
   live[code->tape.instructions[count - 1].out] = true;
-  cut->open_count = 0;
+  cut->open_count = cut->norm_count = 0;
   size_t first = count; /* filled from the end, then moved to the front */
   for (size_t i = count; i-- > 0;) {
     const laves__instruction *p = &code->tape.instructions[i];
@@ -143,7 +145,9 @@ bool laves__code_cut(laves_context *context, const laves__code *code, laves__box
     cut->tape.instructions[first] = newly ? simplified(*p, made) : *p;
     cut->origin[first] = code->origin[i];
     cut->made[first] = made;
-    cut->open_count += (!made && is_choice(p->op)) || (is_norm(p->op) && !(results[i].lower > 0));
+    const bool vanishes = is_norm(p->op) && !(results[i].lower > 0);
+    cut->open_count += (!made && is_choice(p->op)) || vanishes;
+    cut->norm_count += vanishes;
     mark_operands(&cut->tape.instructions[first], live);
   }
   const size_t left = count - first;

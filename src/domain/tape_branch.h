@@ -38,6 +38,7 @@ typedef struct laves__code {
   int32_t *made;     /* [capacity] its choice where intervals decided it, else 0 */
   size_t capacity;   /* of all three */
   size_t open_count; /* choices that are not decided, and norms that may vanish */
+  size_t norm_count; /* of these the norms and roots */
 } laves__code;
 
 /* The whole tape as a code. False when memory is short. */
