@@ -14,6 +14,8 @@ enum { FEET = 9, BESIDE = 6, LOOKED = 2, FEET_MAX = FEET + LOOKED * BESIDE, ROUN
 /* How far beyond a cell codes are valid and feet are taken, in widths; and how near to the surface (parts of the diagonal) a foot
  * must be for its branch to be told, which is looked at a thousand times deeper. */
 static const double margin = 0.25, near_enough = 1e-9;
+/* From how many patches is walked, how far, in how many directions. */
+enum { WALK_LIMIT = 4096, WALK_STEPS = 64, WALK_DIRECTIONS = 8 };
 /* The eight points' place between the middle (0) and the cell's corners (1). */
 static const double spread = 0.75;
 /* How far beside a foot that tells nothing others are looked for, in widths of the cell and its surroundings. */
@@ -22,6 +24,8 @@ static const double beside = 0.1;
 static const double adjacent = 1e-3;
 /* Smooth borders that are known are not looked at where normals turn by less than this part of the wished angle. */
 static const double plainly_smooth = 0.5;
+/* Borders found by halving are smooth where the normals turn by less than this part of it. */
+static const double plainly_joined = 0.2;
 
 /* By this part a function may differ from a linear one over the depth at which it is looked at, and still be smooth. */
 static const double unlike = 0.05;
@@ -58,7 +62,8 @@ static bool enter_branches(laves__crease_search *s, size_t known) {
   laves__implicit_features *all = s->all;
   const size_t count = all->branches.count;
   if (!laves__grow(s->context, &all->patch, &all->branch_capacity, count, sizeof *all->patch) ||
-      !laves__grow(s->context, &all->seen, &all->seen_capacity, count, sizeof *all->seen)) {
+      !laves__grow(s->context, &all->seen, &all->seen_capacity, count, sizeof *all->seen) ||
+      !laves__grow(s->context, &s->sample, &s->sample_capacity, count, sizeof *s->sample)) {
     s->out_of_memory = true;
     return false;
   }
@@ -104,6 +109,7 @@ int32_t laves__branch_of_foot(laves__crease_search *s, const laves__code *code, 
     laves__vec3 own;
     if (!laves__branch_passes(&branches->tape[b], foot, depth, &own)) continue;
     *normal = own;
+    if (!s->all->seen[b]) s->sample[b] = foot;
     s->all->seen[b] = true;
     return b;
   }
@@ -146,7 +152,7 @@ static void cross_border(laves__crease_search *s, const laves__code *code, label
     else
       b = m;
   }
-  if (v3_distance(a.p, b.p) <= close && turns_less(s, a.normal, b.normal, 1))
+  if (v3_distance(a.p, b.p) <= close && turns_less(s, a.normal, b.normal, plainly_joined))
     laves__branches_join(s->all, a.branch, b.branch);
   else
     laves__crease_trace(s, v3_lerp(a.p, b.p, 0.5), a.branch, b.branch);
@@ -394,6 +400,37 @@ static void search_cell(laves__crease_search *s, const laves__code *code, laves_
   for (int i = 0; i < branches && code->norm_count > 0 && !s->out_of_memory; i++) find_tips(s, grown(cell), feet[i].branch);
 }
 
+/* ---- walks ---- */
+
+/* From a point of a patch straight ahead over the surface until another branch begins that is not known to be the same patch.
+ * So slivers between cells come to their patches, and creases are met that all cells missed. */
+static void walk_away(laves__crease_search *s, laves__vec3 from, laves__vec3 direction) {
+  const laves__code *whole = &s->all->whole;
+  const double step = 0.5 * s->all->size;
+  labelled_foot here, next;
+  if (!find_foot(s, whole, from, step, &here) || !label_foot(s, whole, &here)) return;
+  for (int i = 0; i < WALK_STEPS && laves__search_goes_on(s); i++) {
+    const laves__vec3 along = v3_unit(v3_mad(direction, here.normal, -v3_dot(direction, here.normal)));
+    if (!find_foot(s, whole, v3_mad(here.p, along, step), step, &next) || !label_foot(s, whole, &next)) return;
+    if (laves__branch_root(s->all, here.branch) != laves__branch_root(s->all, next.branch)) {
+      cross_border(s, whole, here, next);
+      return;
+    }
+    direction = along;
+    here = next;
+  }
+}
+
+void laves__search_walks(laves__crease_search *s) {
+  const laves__implicit_features *all = s->all;
+  int walks = 0;
+  for (size_t b = 0; b < all->branches.count && walks < WALK_LIMIT; b++) {
+    if (!all->seen[b] || laves__branch_root(all, (int32_t)b) != (int32_t)b) continue;
+    for (int k = 0; k < WALK_DIRECTIONS; k++, walks++) /* the eight corners of a cube */
+      walk_away(s, s->sample[b], v3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
+  }
+}
+
 /* How many of the smallest cells are searched at most; then cells twice as wide are taken. */
 enum { CELL_LIMIT = 2000000, DEPTH_LIMIT = 12 };
 
@@ -441,7 +478,7 @@ static void forget(laves__crease_search *s) {
   laves__point_grid_init(&all->piece_grid, context, piece_width);
   laves__point_grid_init(&all->site_grid, context, site_width);
   laves__point_grid_init(&s->corner_grid, context, corner_width);
-  s->lines->point_count = s->lines->fixed_count = 0;
+  s->lines->point_count = s->lines->fixed_count = s->weak_count = 0;
   s->cell_count = 0;
   s->crowded = false;
 }

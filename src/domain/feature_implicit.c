@@ -35,6 +35,11 @@ static void search(laves__crease_search *s) {
   s->room = laves__alloc(s->context, count, sizeof *s->room);
   s->out_of_memory = !s->results || !s->room;
   if (!s->out_of_memory) laves__search_cells(s);
+  if (!s->out_of_memory) laves__search_walks(s);
+  if (!s->out_of_memory) laves__corners_complete(s);
+  if (!s->out_of_memory) laves__weak_borders_join(s);
+  laves__free(s->context, s->weak, s->weak_capacity, sizeof *s->weak);
+  laves__free(s->context, s->sample, s->sample_capacity, sizeof *s->sample);
   laves__free(s->context, s->results, count, sizeof *s->results);
   laves__free(s->context, s->room, count, sizeof *s->room);
 }

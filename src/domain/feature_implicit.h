@@ -64,6 +64,12 @@ typedef struct laves__implicit_features {
 
 /* ---- searching ---- */
 
+/* A point between branches that meet at less than the wished angle. */
+typedef struct laves__weak_border {
+  laves__vec3 p;
+  int32_t branch[2];
+} laves__weak_border;
+
 typedef struct laves__crease_search {
   laves__implicit_features *all;
   laves_context *context;
@@ -75,6 +81,10 @@ typedef struct laves__crease_search {
   laves__point_grid corner_grid;
   uint32_t *corner_point; /* of each corner */
   size_t corner_capacity;
+  laves__weak_border *weak;
+  size_t weak_count, weak_capacity;
+  laves__vec3 *sample; /* [sample_capacity] a foot of each branch */
+  size_t sample_capacity;
   laves__code *level; /* codes of the cells on the way down */
   laves__interval *results;
   laves__choice *room;
@@ -100,6 +110,8 @@ int32_t laves__branch_of_foot(laves__crease_search *s, const laves__code *code, 
 
 /* Finds branches, smooth borders and creases in all cells. */
 void laves__search_cells(laves__crease_search *s);
+/* The same from points of all patches found so far, along the surface. */
+void laves__search_walks(laves__crease_search *s);
 
 /* How two branches meet at a point of both. */
 typedef enum laves__meeting { LAVES__NOT_MET, LAVES__CONVEX, LAVES__CONCAVE } laves__meeting;
@@ -108,6 +120,11 @@ laves__meeting laves__branches_meet(const laves__crease_search *s, laves__vec3 p
 
 /* Follows the crease of two branches through a point near it, unless that has been done; the pieces go to s->all. */
 void laves__crease_trace(laves__crease_search *s, laves__vec3 start, int32_t a, int32_t b);
+
+/* Follows the creases that leave the corners found, and those that they lead to. */
+void laves__corners_complete(laves__crease_search *s);
+/* Joins branches whose border was too weak for a crease, where no crease has gone on along it. */
+void laves__weak_borders_join(laves__crease_search *s);
 
 /* A corner, at a point met before if that is near. */
 bool laves__corner_add(laves__crease_search *s, laves__vec3 p, uint32_t *point);

@@ -29,6 +29,9 @@ static const double smooth_turn = 0.052;
  * a crease is picked up again. */
 static const double rival_radius = 6, corner_reach = 64, ahead = 16;
 
+/* A crease goes on until its angle is below this part of the wished one: fewer ends in the open, and patches that stay apart. */
+static const double weak_part = 0.25;
+
 static const double degrees = 57.29577951308232;
 
 /* ---- how branches meet ---- */
@@ -102,7 +105,7 @@ static outcome advance(const laves__crease_search *s, const spot *from, double w
   if (v3_dot(to->tangent, from->tangent) < least_cosine) return to->meeting == from->meeting ? TOO_LONG : ENDED;
   if (h * v3_distance(to->tangent, from->tangent) > 8 * s->sagitta) return TOO_LONG; /* of an arc: h turn / 8 */
   if (to->meeting != from->meeting) return ENDED;
-  return to->turn < s->wish->angle ? FADED : WENT;
+  return to->turn < weak_part * s->wish->angle ? FADED : WENT;
 }
 
 /* ---- what has been found ---- */
@@ -248,7 +251,7 @@ static bool find_continuation(const laves__crease_search *s, const spot *last, d
       a.p = v3_mad(last->p, last->tangent, way * ahead * s->probe);
       if (!put_on_crease(s, a.branch, 0.5 * ahead * s->probe, &a.p)) continue;
       look_around(s, &a);
-      if (a.meeting != last->meeting || a.turn < s->wish->angle) continue;
+      if (a.meeting != last->meeting || a.turn < weak_part * s->wish->angle) continue;
       const double turn0 = v3_distance(a.normal[0], last->normal[0]), turn1 = v3_distance(a.normal[1], last->normal[1]);
       if (turn0 > smooth_turn || turn1 > smooth_turn || turn0 + turn1 >= least) continue;
       least = turn0 + turn1;
@@ -321,6 +324,20 @@ static bool close_ring(laves__crease_search *s, const spot *here, double way, do
   return add_piece(s, here, &end), true;
 }
 
+/* Where a crease may go on below the wished angle, it is not known yet whether this is one. */
+static void note_weak(laves__crease_search *s, const spot *a) {
+  if (a->turn < weak_part * s->wish->angle) {
+    laves__branches_join(s->all, a->branch[0], a->branch[1]);
+    return;
+  }
+  if (laves__branch_root(s->all, a->branch[0]) == laves__branch_root(s->all, a->branch[1])) return;
+  if (!laves__grow(s->context, &s->weak, &s->weak_capacity, s->weak_count + 1, sizeof *s->weak)) {
+    s->out_of_memory = true;
+    return;
+  }
+  s->weak[s->weak_count++] = (laves__weak_border){a->p, {a->branch[0], a->branch[1]}};
+}
+
 /* True when the crease closed. */
 static bool follow(laves__crease_search *s, const spot *start, double way) {
   spot here = *start, there;
@@ -353,16 +370,46 @@ static bool follow(laves__crease_search *s, const spot *start, double way) {
   return false;
 }
 
-void laves__crease_trace(laves__crease_search *s, laves__vec3 start, int32_t a, int32_t b) {
+/* reach: how far the crease may be from the start; near: how near a piece that has been found must be to be the same. */
+static void trace(laves__crease_search *s, laves__vec3 start, int32_t a, int32_t b, double reach, double near) {
   spot first = {.p = start, .branch = {a, b}};
-  if (!put_on_crease(s, first.branch, s->all->size, &first.p)) return;
+  if (!put_on_crease(s, first.branch, reach, &first.p)) return;
   look_around(s, &first);
   if (first.meeting == LAVES__NOT_MET) return;
   if (first.turn < s->wish->angle) {
-    laves__branches_join(s->all, a, b);
+    note_weak(s, &first);
     return;
   }
-  if (laves__piece_near(s->all, first.p, 4 * s->sagitta, a, b) != LAVES__NONE) return;
+  if (laves__piece_near(s->all, first.p, near, a, b) != LAVES__NONE) return;
   if (!add_point(s, &first)) return;
   if (!follow(s, &first, 1)) follow(s, &first, -1);
+}
+
+void laves__crease_trace(laves__crease_search *s, laves__vec3 start, int32_t a, int32_t b) {
+  trace(s, start, a, b, s->all->size, 4 * s->sagitta);
+}
+
+void laves__corners_complete(laves__crease_search *s) {
+  for (size_t i = 0; i < s->corner_grid.count && laves__search_goes_on(s); i++) { /* corners are added on the way */
+    const laves__vec3 p = s->corner_grid.at[i];
+    int32_t rival[RIVAL_LIMIT];
+    const int count = find_rivals(s, p, rival);
+    for (int k = 0; k < count * count; k++) {
+      const int32_t a = rival[k / count], b = rival[k % count];
+      if (a == b) continue; /* both orders: the crease may leave on either side */
+      const laves__vec3 along = v3_unit(v3_cross(laves__tape_gradient(tape_of(s, a), p).gradient,
+                                                 laves__tape_gradient(tape_of(s, b), p).gradient));
+      trace(s, v3_mad(p, along, corner_reach * s->probe), a, b, ahead * s->probe, ahead * s->probe);
+    }
+  }
+}
+
+/* ---- weak borders ---- */
+
+void laves__weak_borders_join(laves__crease_search *s) {
+  for (size_t i = 0; i < s->weak_count; i++) {
+    const laves__weak_border *w = &s->weak[i];
+    if (laves__piece_near(s->all, w->p, 4 * s->sagitta, w->branch[0], w->branch[1]) == LAVES__NONE)
+      laves__branches_join(s->all, w->branch[0], w->branch[1]);
+  }
 }
