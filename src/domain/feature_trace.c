@@ -26,8 +26,8 @@ static const double equal_part = 1e-3;
 /* A crease goes on with another function if that turns the normals by less than this (sine of 3 degrees). */
 static const double smooth_turn = 0.052;
 /* Distances around an end, in probes: where rivals are looked for, how far a corner or what goes on may lie, how far ahead
- * a crease is picked up again. */
-static const double rival_radius = 6, corner_reach = 64, ahead = 16;
+ * a crease is picked up again; how far it must lead at least. */
+static const double rival_radius = 6, corner_reach = 64, ahead = 16, lead = 8;
 
 /* A crease goes on until its angle is below this part of the wished one: fewer ends in the open, and patches that stay apart. */
 static const double weak_part = 0.25;
@@ -370,6 +370,12 @@ static bool follow(laves__crease_search *s, const spot *start, double way) {
   return false;
 }
 
+/* At corners faces touch that have no crease in common. */
+static bool leads_on(const laves__crease_search *s, const spot *a) {
+  spot there;
+  return advance(s, a, 1, lead * s->probe, &there) == WENT || advance(s, a, -1, lead * s->probe, &there) == WENT;
+}
+
 /* reach: how far the crease may be from the start; near: how near a piece that has been found must be to be the same. */
 static void trace(laves__crease_search *s, laves__vec3 start, int32_t a, int32_t b, double reach, double near) {
   spot first = {.p = start, .branch = {a, b}};
@@ -381,7 +387,7 @@ static void trace(laves__crease_search *s, laves__vec3 start, int32_t a, int32_t
     return;
   }
   if (laves__piece_near(s->all, first.p, near, a, b) != LAVES__NONE) return;
-  if (!add_point(s, &first)) return;
+  if (!leads_on(s, &first) || !add_point(s, &first)) return;
   if (!follow(s, &first, 1)) follow(s, &first, -1);
 }
 
