@@ -101,7 +101,10 @@ int32_t laves__branch_of_foot(laves__crease_search *s, const laves__code *code, 
   if (!parts_space(&code->tape, foot, *normal, depth)) return LAVES__NO_BRANCH;
   for (int side = -1; side <= 1; side += 2) {
     laves__signature signature;
-    laves__signature_at(branches->whole, code, v3_mad(foot, *normal, side * depth), s->room, &signature);
+    if (!laves__signature_at(s->context, branches->whole, code, v3_mad(foot, *normal, side * depth), &s->room, &signature)) {
+      s->out_of_memory = true;
+      return LAVES__NO_BRANCH;
+    }
     const size_t known = branches->count;
     const int32_t b = laves__branches_add(branches, &signature);
     s->out_of_memory = s->out_of_memory || branches->out_of_memory;
@@ -440,7 +443,7 @@ static void visit(laves__crease_search *s, laves__box3 cell, int level, int dept
   bool may_be_nan;
   const laves__interval value = laves__tape_interval(&code->tape, cell, &may_be_nan);
   if (!may_be_nan && (value.lower > 0 || value.upper < 0)) return;
-  if (!laves__code_cut(s->context, code, grown(cell), s->results, &s->level[level + 1])) {
+  if (!laves__code_cut(s->context, code, grown(cell), &s->room, &s->level[level + 1])) {
     s->out_of_memory = true;
     return;
   }

@@ -29,19 +29,14 @@ static laves_result outcome_of(const laves__crease_search *s, laves_error *error
 }
 
 static void search(laves__crease_search *s) {
-  laves__implicit_features *all = s->all;
-  const size_t count = all->whole.tape.count;
-  s->results = laves__alloc(s->context, count, sizeof *s->results);
-  s->room = laves__alloc(s->context, count, sizeof *s->room);
-  s->out_of_memory = !s->results || !s->room;
+  s->out_of_memory = !laves__branch_room_make(s->context, s->all->solid.tape, &s->room);
   if (!s->out_of_memory) laves__search_cells(s);
   if (!s->out_of_memory) laves__search_walks(s);
   if (!s->out_of_memory) laves__corners_complete(s);
   if (!s->out_of_memory) laves__weak_borders_join(s);
   laves__free(s->context, s->weak, s->weak_capacity, sizeof *s->weak);
   laves__free(s->context, s->sample, s->sample_capacity, sizeof *s->sample);
-  laves__free(s->context, s->results, count, sizeof *s->results);
-  laves__free(s->context, s->room, count, sizeof *s->room);
+  laves__branch_room_free(s->context, &s->room);
 }
 
 /* ---- patches ---- */
@@ -90,25 +85,35 @@ static bool give_segments(const laves__implicit_features *all, laves__feature_li
 
 /* ---- questions ---- */
 
-/* The branch at a foot, as laves__branch_of_foot, but none is added. The whole tape is short of the limit on registers, not
- * of one on instructions, so choices may need memory; without it no branch is known. */
-static int32_t known_branch(const laves__implicit_features *all, laves__vec3 foot, laves__vec3 normal) {
-  enum { FEW = 2048 };
-  laves__choice few[FEW];
-  const size_t count = all->whole.tape.count;
-  laves_context *context = all->features->context;
-  laves__choice *room = count <= FEW ? few : laves__alloc(context, count, sizeof *room);
-  int32_t found = LAVES__NO_BRANCH;
-  for (int side = -1; room && side <= 1 && found == LAVES__NO_BRANCH; side += 2) {
+static int32_t known_branch_with(const laves__implicit_features *all, laves__vec3 foot, laves__vec3 normal,
+                                 laves__branch_room *room) {
+  const double depth = probe_part * all->solid.diagonal;
+  for (int side = -1; side <= 1; side += 2) {
     laves__signature signature;
-    const double depth = probe_part * all->solid.diagonal;
-    laves__signature_at(all->branches.whole, &all->whole, v3_mad(foot, normal, side * depth), room, &signature);
+    const laves__vec3 at = v3_mad(foot, normal, side * depth);
+    if (!laves__signature_at(all->features->context, all->branches.whole, &all->whole, at, room, &signature)) break;
     const int32_t b = laves__branches_find(&all->branches, &signature);
-    if (b == LAVES__NO_BRANCH || all->patch[b] < 0) continue;
     laves__vec3 own;
-    if (laves__branch_passes(&all->branches.tape[b], foot, depth, &own)) found = b;
+    if (b != LAVES__NO_BRANCH && all->patch[b] >= 0 && laves__branch_passes(&all->branches.tape[b], foot, depth, &own)) return b;
   }
-  if (room != few) laves__free(context, room, count, sizeof *room);
+  return LAVES__NO_BRANCH;
+}
+
+/* The branch at a foot, as laves__branch_of_foot, but none is added. Only very long tapes need memory for that; when there is
+ * none, no branch is known. */
+static int32_t known_branch(const laves__implicit_features *all, laves__vec3 foot, laves__vec3 normal) {
+  enum { FEW = 8192 };
+  if (all->whole.tape.count <= FEW) {
+    int32_t number[FEW], side[FEW];
+    bool live[FEW];
+    laves__choice choices[FEW];
+    laves__branch_room room = {.number = number, .live = live, .side = side, .choices = choices};
+    return known_branch_with(all, foot, normal, &room);
+  }
+  laves__branch_room room;
+  if (!laves__branch_room_make(all->features->context, all->solid.tape, &room)) return LAVES__NO_BRANCH;
+  const int32_t found = known_branch_with(all, foot, normal, &room);
+  laves__branch_room_free(all->features->context, &room);
   return found;
 }
 
@@ -141,6 +146,7 @@ static void find_near(site_question *q) {
 static int32_t patch_at(const void *self, laves__vec3 foot, uint32_t hint) {
   const laves__implicit_features *all = self;
   (void)hint;
+  if (all->features->patch_count == 1) return 0;
   const laves__vec3 normal = v3_unit(laves__tape_gradient(all->solid.tape, foot).gradient);
   const int32_t b = known_branch(all, foot, normal);
   if (b != LAVES__NO_BRANCH) return all->patch[b];

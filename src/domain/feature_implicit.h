@@ -86,8 +86,7 @@ typedef struct laves__crease_search {
   laves__vec3 *sample; /* [sample_capacity] a foot of each branch */
   size_t sample_capacity;
   laves__code *level; /* codes of the cells on the way down */
-  laves__interval *results;
-  laves__choice *room;
+  laves__branch_room room;
   size_t cell_count;
   unsigned asked;
   double fraction; /* of the search that is done, roughly */

@@ -32,20 +32,55 @@ enum {
 
 /* ---- codes ---- */
 
+/* What an operand has gone through on its way: a decided choice (side 0: none), and the trails that lead there (number + 1;
+ * 0: none). Who reaches the operand has made these choices. */
+typedef struct laves__trail {
+  uint32_t instruction; /* of the whole tape */
+  int32_t side;
+  uint32_t before[2];
+} laves__trail;
+
+/* Operands of an instruction by who makes them. */
+enum { LAVES__FROM_X = -3, LAVES__FROM_Y, LAVES__FROM_Z, LAVES__FROM_CONSTANT = -4 };
+typedef struct laves__code_item {
+  uint32_t origin;    /* instruction of the whole tape that it stands for */
+  int32_t source[3];  /* an item, or one of LAVES__FROM_ */
+  uint32_t trail[3];  /* of each operand, + 1 */
+  bool may_vanish;    /* a norm or a root that may be zero */
+} laves__code_item;
+
 typedef struct laves__code {
-  laves__tape tape;  /* instructions: [capacity] */
-  uint32_t *origin;  /* [capacity] instruction of the whole tape that each stands for */
-  int32_t *made;     /* [capacity] its choice where intervals decided it, else 0 */
-  size_t capacity;   /* of all three */
+  laves__tape tape;       /* the same with registers, for running; instructions: [capacity] */
+  laves__code_item *item; /* [capacity] */
+  size_t capacity;
+  laves__trail *trail;
+  size_t trail_count, trail_capacity;
+  uint32_t root_trail;
   size_t open_count; /* choices that are not decided, and norms that may vanish */
   size_t norm_count; /* of these the norms and roots */
 } laves__code;
 
+/* Room for cutting codes and for telling signatures of one tape; one for each thread. */
+typedef struct laves__branch_room {
+  size_t count;             /* of the whole tape's instructions: all arrays have this and some more */
+  laves__interval *results; /* these three for cutting only */
+  struct laves__cut_value *value;
+  int32_t *number;
+  bool *live;
+  int32_t *side;
+  struct laves__choice *choices;
+  bool *visited; /* trails */
+  uint32_t *stack;
+  size_t trail_capacity;
+} laves__branch_room;
+
+bool laves__branch_room_make(laves_context *context, const laves__tape *whole, laves__branch_room *room);
+void laves__branch_room_free(laves_context *context, laves__branch_room *room);
+
 /* The whole tape as a code. False when memory is short. */
 bool laves__code_whole(laves_context *context, const laves__tape *tape, laves__code *code);
-/* Cuts `code` down to what matters in the box; `cut` is overwritten and grows as needed. False when memory is short.
- * results: scratch of [code->tape.count]. */
-bool laves__code_cut(laves_context *context, const laves__code *code, laves__box3 box, laves__interval *results,
+/* Cuts `code` down to what matters in the box; `cut` is overwritten and grows as needed. False when memory is short. */
+bool laves__code_cut(laves_context *context, const laves__code *code, laves__box3 box, laves__branch_room *room,
                      laves__code *cut);
 void laves__code_free(laves_context *context, laves__code *code);
 
@@ -57,13 +92,13 @@ typedef struct laves__choice {
 } laves__choice;
 
 typedef struct laves__signature {
-  laves__choice *choices; /* instructions descending */
+  laves__choice *choices; /* instructions descending; in the room that it was made in */
   size_t count;
 } laves__signature;
 
-/* The signature at a point where `code` is valid. room: [code->tape.count] for the choices. */
-void laves__signature_at(const laves__tape *whole, const laves__code *code, laves__vec3 point, laves__choice *room,
-                         laves__signature *signature);
+/* The signature at a point where `code` is valid. False when memory is short. */
+bool laves__signature_at(laves_context *context, const laves__tape *whole, const laves__code *code, laves__vec3 point,
+                         laves__branch_room *room, laves__signature *signature);
 
 /* ---- the store ---- */
 
