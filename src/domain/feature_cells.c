@@ -14,8 +14,8 @@ enum { FEET = 9, BESIDE = 6, LOOKED = 2, FEET_MAX = FEET + LOOKED * BESIDE, ROUN
 /* How far beyond a cell codes are valid and feet are taken, in widths; and how near to the surface (parts of the diagonal) a foot
  * must be for its branch to be told, which is looked at a thousand times deeper. */
 static const double margin = 0.25, near_enough = 1e-9;
-/* From how many patches is walked, how far, in how many directions. */
-enum { WALK_LIMIT = 4096, WALK_STEPS = 64, WALK_DIRECTIONS = 8 };
+/* From how many patches is walked, how many half sizes far, in how many directions; after how many steps the code is cut anew. */
+enum { WALK_LIMIT = 4096, WALK_STEPS = 32, WALK_DIRECTIONS = 27, WALK_CUT = 4 };
 /* The eight points' place between the middle (0) and the cell's corners (1). */
 static const double spread = 0.75;
 /* How far beside a foot that tells nothing others are looked for, in widths of the cell and its surroundings. */
@@ -407,16 +407,23 @@ static void search_cell(laves__crease_search *s, const laves__code *code, laves_
 
 /* From a point of a patch straight ahead over the surface until another branch begins that is not known to be the same patch.
  * So slivers between cells come to their patches, and creases are met that all cells missed. */
-static void walk_away(laves__crease_search *s, laves__vec3 from, laves__vec3 direction) {
-  const laves__code *whole = &s->all->whole;
-  const double step = 0.5 * s->all->size;
-  labelled_foot here, next;
-  if (!find_foot(s, whole, from, step, &here) || !label_foot(s, whole, &here)) return;
+static void walk_away(laves__crease_search *s, laves__code *code, laves__vec3 from, laves__vec3 direction) {
+  const double step = 0.5 * s->all->size, half = (WALK_CUT + 2) * step;
+  const laves__vec3 reach = v3(half, half, half);
+  labelled_foot here = {.p = from}, next;
   for (int i = 0; i < WALK_STEPS && laves__search_goes_on(s); i++) {
+    if (i % WALK_CUT == 0) {
+      const laves__box3 around = {v3_sub(here.p, reach), v3_add(here.p, reach)};
+      if (!laves__code_cut(s->context, &s->all->whole, around, &s->room, code)) {
+        s->out_of_memory = true;
+        return;
+      }
+    }
+    if (i == 0 && (!find_foot(s, code, from, step, &here) || !label_foot(s, code, &here))) return;
     const laves__vec3 along = v3_unit(v3_mad(direction, here.normal, -v3_dot(direction, here.normal)));
-    if (!find_foot(s, whole, v3_mad(here.p, along, step), step, &next) || !label_foot(s, whole, &next)) return;
+    if (!find_foot(s, code, v3_mad(here.p, along, step), step, &next) || !label_foot(s, code, &next)) return;
     if (laves__branch_root(s->all, here.branch) != laves__branch_root(s->all, next.branch)) {
-      cross_border(s, whole, here, next);
+      cross_border(s, code, here, next);
       return;
     }
     direction = along;
@@ -426,12 +433,14 @@ static void walk_away(laves__crease_search *s, laves__vec3 from, laves__vec3 dir
 
 void laves__search_walks(laves__crease_search *s) {
   const laves__implicit_features *all = s->all;
+  laves__code code = {0};
   int walks = 0;
   for (size_t b = 0; b < all->branches.count && walks < WALK_LIMIT; b++) {
     if (!all->seen[b] || laves__branch_root(all, (int32_t)b) != (int32_t)b) continue;
-    for (int k = 0; k < WALK_DIRECTIONS; k++, walks++) /* the eight corners of a cube */
-      walk_away(s, s->sample[b], v3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
+    for (int k = 0; k < WALK_DIRECTIONS && laves__branch_root(all, (int32_t)b) == (int32_t)b; k++, walks++)
+      walk_away(s, &code, s->sample[b], v3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)); /* all around a cube */
   }
+  laves__code_free(s->context, &code);
 }
 
 /* How many of the smallest cells are searched at most; then cells twice as wide are taken. */
