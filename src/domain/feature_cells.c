@@ -405,11 +405,19 @@ static void search_cell(laves__crease_search *s, const laves__code *code, laves_
 
 /* ---- walks ---- */
 
-/* From a point of a patch straight ahead over the surface until another branch begins that is not known to be the same patch.
+/* Where a branch was met and is not met again, it is thinner than the depth at which branches are told. */
+static void join_at_once(laves__crease_search *s, int32_t branch, const labelled_foot *here) {
+  if (here->branch == branch) return;
+  const laves__vec3 normal = laves__tape_gradient(&s->all->branches.tape[branch], here->p).gradient;
+  if (turns_less(s, normal, here->normal, plainly_joined)) laves__branches_join(s->all, branch, here->branch);
+}
+
+/* From a point of a patch straight ahead over the surface until a crease comes.
  * So slivers between cells come to their patches, and creases are met that all cells missed. */
-static void walk_away(laves__crease_search *s, laves__code *code, laves__vec3 from, laves__vec3 direction) {
+static void walk_away(laves__crease_search *s, laves__code *code, int32_t branch, laves__vec3 direction) {
   const double step = 0.5 * s->all->size, half = (WALK_CUT + 2) * step;
   const laves__vec3 reach = v3(half, half, half);
+  const laves__vec3 from = s->sample[branch];
   labelled_foot here = {.p = from}, next;
   for (int i = 0; i < WALK_STEPS && laves__search_goes_on(s); i++) {
     if (i % WALK_CUT == 0) {
@@ -419,12 +427,15 @@ static void walk_away(laves__crease_search *s, laves__code *code, laves__vec3 fr
         return;
       }
     }
-    if (i == 0 && (!find_foot(s, code, from, step, &here) || !label_foot(s, code, &here))) return;
+    if (i == 0) {
+      if (!find_foot(s, code, from, step, &here) || !label_foot(s, code, &here)) return;
+      join_at_once(s, branch, &here);
+    }
     const laves__vec3 along = v3_unit(v3_mad(direction, here.normal, -v3_dot(direction, here.normal)));
     if (!find_foot(s, code, v3_mad(here.p, along, step), step, &next) || !label_foot(s, code, &next)) return;
     if (laves__branch_root(s->all, here.branch) != laves__branch_root(s->all, next.branch)) {
       cross_border(s, code, here, next);
-      return;
+      if (laves__branch_root(s->all, here.branch) != laves__branch_root(s->all, next.branch)) return;
     }
     direction = along;
     here = next;
@@ -437,8 +448,11 @@ void laves__search_walks(laves__crease_search *s) {
   int walks = 0;
   for (size_t b = 0; b < all->branches.count && walks < WALK_LIMIT; b++) {
     if (!all->seen[b] || laves__branch_root(all, (int32_t)b) != (int32_t)b) continue;
-    for (int k = 0; k < WALK_DIRECTIONS && laves__branch_root(all, (int32_t)b) == (int32_t)b; k++, walks++)
-      walk_away(s, &code, s->sample[b], v3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)); /* all around a cube */
+    for (int k = 0; k < WALK_DIRECTIONS && laves__branch_root(all, (int32_t)b) == (int32_t)b; k++) {
+      if (k == WALK_DIRECTIONS / 2) continue; /* all around a cube, but not from its middle to its middle */
+      walk_away(s, &code, (int32_t)b, v3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
+      walks++;
+    }
   }
   laves__code_free(s->context, &code);
 }
