@@ -14,7 +14,9 @@ enum { FEET = 9, BESIDE = 6, LOOKED = 2, FEET_MAX = FEET + LOOKED * BESIDE, ROUN
 /* How far beyond a cell codes are valid and feet are taken, in widths; and how near to the surface (parts of the diagonal) a foot
  * must be for its branch to be told, which is looked at a thousand times deeper. */
 static const double margin = 0.25, near_enough = 1e-9;
-/* From how many patches is walked, how many half sizes far, in how many directions; after how many steps the code is cut anew. */
+/* Walks go by half sizes or this part of the diagonal, whichever is less. */
+static const double walk_step = 0.005;
+/* From how many patches is walked, how many steps, in how many directions; after how many steps the code is cut anew. */
 enum { WALK_LIMIT = 4096, WALK_STEPS = 32, WALK_DIRECTIONS = 27, WALK_CUT = 4 };
 /* The eight points' place between the middle (0) and the cell's corners (1). */
 static const double spread = 0.75;
@@ -415,7 +417,7 @@ static void join_at_once(laves__crease_search *s, int32_t branch, const labelled
 /* From a point of a patch straight ahead over the surface until a crease comes.
  * So slivers between cells come to their patches, and creases are met that all cells missed. */
 static void walk_away(laves__crease_search *s, laves__code *code, int32_t branch, laves__vec3 direction) {
-  const double step = 0.5 * s->all->size, half = (WALK_CUT + 2) * step;
+  const double step = min_of(0.5 * s->all->size, walk_step * s->all->solid.diagonal), half = (WALK_CUT + 2) * step;
   const laves__vec3 reach = v3(half, half, half);
   const laves__vec3 from = s->sample[branch];
   labelled_foot here = {.p = from}, next;
