@@ -196,9 +196,8 @@ static bool project_patch(const void *self, int32_t patch, laves__vec3 point, do
     return true;
   laves__dual there;
   if (laves__tape_foot(all->solid.tape, all->solid.diagonal, point, reach, foot, &there)) {
-    *normal = v3_unit(there.gradient);
-    const int32_t b = known_branch(all, *foot, *normal);
-    if (b != LAVES__NO_BRANCH && all->patch[b] == patch) {
+    const int32_t b = known_branch(all, *foot, v3_unit(there.gradient));
+    if (b != LAVES__NO_BRANCH && all->patch[b] == patch && foot_on(all, b, point, reach, foot, normal)) {
       *hint = (uint32_t)b;
       return true;
     }

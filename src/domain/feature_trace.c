@@ -49,16 +49,18 @@ laves__meeting laves__branches_meet(const laves__crease_search *s, laves__vec3 p
   const double cosine = v3_dot(normal[0], normal[1]), sine = v3_norm(v3_cross(normal[0], normal[1]));
   *turn = degrees * laves__angle(sine, cosine);
   if (!(slope[0] > 0 && slope[1] > 0 && sine > 1e-6)) return LAVES__NOT_MET;
-  laves__vec3 probes[4]; /* on face 0 before and beyond the crease, on face 1 before and beyond */
-  double phi[4], own[4];
+  laves__vec3 probes[5]; /* on face 0 before and beyond the crease, on face 1 before and beyond; on it */
+  double phi[5], own[4];
   for (int i = 0; i < 2; i++) {
     const laves__vec3 beyond = v3_scale(v3_mad(normal[1 - i], normal[i], -cosine), s->probe / sine);
     probes[2 * i] = v3_sub(p, beyond);
     probes[2 * i + 1] = v3_add(p, beyond);
     laves__tape_evaluate(tape_of(s, branch[i]), 2, probes + 2 * i, own + 2 * i);
   }
-  laves__tape_evaluate(s->all->solid.tape, 4, probes, phi);
+  probes[4] = p;
+  laves__tape_evaluate(s->all->solid.tape, 5, probes, phi);
   const double equal = equal_part * s->probe * sine * min_of(slope[0], slope[1]);
+  if (!(fabs(phi[4]) <= equal)) return LAVES__NOT_MET;
   const bool before = fabs(phi[0] - own[0]) <= equal && fabs(phi[2] - own[2]) <= equal;
   const bool beyond = fabs(phi[1] - own[1]) <= equal && fabs(phi[3] - own[3]) <= equal;
   if (before == beyond) return LAVES__NOT_MET;
