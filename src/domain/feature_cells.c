@@ -10,7 +10,15 @@
 #include "domain/feature_implicit.h"
 
 /* Feet are looked for from the middle of a cell and from eight points around it. */
-enum { FEET = 9, BESIDE = 6, LOOKED = 2, FEET_MAX = FEET + LOOKED * BESIDE, ROUNDS = 4, BISECTION_LIMIT = 40, TIP_DIRECTIONS = 26 };
+enum {
+  FEET = 9,
+  BESIDE = 6,
+  LOOKED = 2,
+  FEET_MAX = FEET + LOOKED * BESIDE,
+  ROUNDS = 4,
+  BISECTION_LIMIT = 40,
+  TIP_DIRECTIONS = 26
+};
 /* How far beyond a cell codes are valid and feet are taken, in widths; and how near to the surface (parts of the diagonal) a foot
  * must be for its branch to be told, which is looked at a thousand times deeper. */
 static const double margin = 0.25, near_enough = 1e-9;
@@ -123,7 +131,8 @@ int32_t laves__branch_of_foot(laves__crease_search *s, const laves__code *code, 
 
 /* ---- borders ---- */
 
-static bool find_foot(const laves__crease_search *s, const laves__code *code, laves__vec3 from, double reach, labelled_foot *found) {
+static bool find_foot(const laves__crease_search *s, const laves__code *code, laves__vec3 from, double reach,
+                      labelled_foot *found) {
   laves__dual there;
   if (!laves__tape_foot(&code->tape, s->all->solid.diagonal, from, reach, &found->p, &there)) return false;
   found->normal = v3_unit(there.gradient);
@@ -318,13 +327,14 @@ static int look_beside(laves__crease_search *s, const laves__code *code, laves__
   for (int k = 0; k < BESIDE; k++) {
     laves__vec3 from = foot;
     (&from.x)[k / 2] += k % 2 ? away : -away;
-    if (find_foot(s, code, from, 2 * away, &feet[count]) && holds(around, feet[count].p)) count += label_foot(s, code, &feet[count]);
+    if (find_foot(s, code, from, 2 * away, &feet[count]) && holds(around, feet[count].p))
+      count += label_foot(s, code, &feet[count]);
   }
   return count;
 }
 
-/* Feet in and around a cell, with their branches: feet[FEET_MAX]. *smooth: the gradient turns so little over the cell that no crease is
- * likely; then there are fewer. */
+/* Feet in and around a cell, with their branches: feet[FEET_MAX]. *smooth: the gradient turns so little over the cell that no
+ * crease is likely; then there are fewer. */
 static int find_feet(laves__crease_search *s, const laves__code *code, laves__box3 cell, labelled_foot *feet, bool *smooth) {
   laves__vec3 start[FEET], p[FEET];
   laves__dual at[FEET];

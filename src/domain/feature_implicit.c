@@ -13,6 +13,8 @@ static const double largest_size = 1.0 / 24, least_size = 1.0 / 3000;
 /* Parts of the size: the longest step along a crease, and by how much a chord may miss it where that is less than the above. */
 static const double step_part = 0.25, sagitta_of_size = 0.01;
 /* Up to so many branches of a patch are tried one by one when nothing tells which one is near. */
+/* Where no branch of a patch has a foot on the surface, distance from it counts so much more than distance to the foot. */
+static const double off_surface_cost = 2;
 enum { TRIED_MEMBERS = 16, NEAR_MEMBERS = 32 };
 
 /* ---- the search ---- */
@@ -74,9 +76,8 @@ static bool number_patches(laves__implicit_features *all, laves_context *context
 static bool give_segments(const laves__implicit_features *all, laves__feature_lines *lines) {
   for (size_t i = 0; i < all->piece_grid.count; i++) {
     const laves__crease_piece *c = &all->piece[i];
-    const laves__feature_segment segment = {.ends = {c->points[0], c->points[1]},
-                                            .patch = {all->patch[c->branch[0]], all->patch[c->branch[1]]},
-                                            .angle = c->angle};
+    const laves__feature_segment segment = {
+        .ends = {c->points[0], c->points[1]}, .patch = {all->patch[c->branch[0]], all->patch[c->branch[1]]}, .angle = c->angle};
     if (!laves__feature_lines_add_segment(lines, &segment)) return false;
   }
   for (size_t i = 0; i < lines->fixed_count; i++) lines->fixed[i].patch = all->patch[lines->fixed[i].patch];
@@ -174,15 +175,19 @@ static bool foot_on(const laves__implicit_features *all, int32_t branch, laves__
   return true;
 }
 
-/* Whether a foot is on the solid's surface, and not only on the continuation of one of its branches. */
-static bool is_real(const laves__implicit_features *all, laves__vec3 foot) {
+static double value_at(const laves__implicit_features *all, laves__vec3 p) {
   double phi;
-  laves__tape_evaluate(all->solid.tape, 1, &foot, &phi);
-  return fabs(phi) <= probe_part * all->solid.diagonal;
+  laves__tape_evaluate(all->solid.tape, 1, &p, &phi);
+  return phi;
 }
 
-/* Of the branches of a patch: the hint's where its foot is real; the one that makes the surface nearby; the nearest real
- * foot among those met around here; the nearest foot on a continuation. */
+/* Whether a foot is on the solid's surface, and not only on the continuation of one of its branches. */
+static bool is_real(const laves__implicit_features *all, laves__vec3 foot) {
+  return fabs(value_at(all, foot)) <= probe_part * all->solid.diagonal;
+}
+
+/* Of the branches of a patch: the hint's where its foot is real; the one that makes the surface nearby; of those met around here
+ * the one whose foot is near, and near the surface. */
 static bool project_patch(const void *self, int32_t patch, laves__vec3 point, double reach, uint32_t *hint, laves__vec3 *foot,
                           laves__vec3 *normal) {
   const laves__implicit_features *all = self;
@@ -191,8 +196,8 @@ static bool project_patch(const void *self, int32_t patch, laves__vec3 point, do
     *hint = all->members[begin];
     return foot_on(all, (int32_t)all->members[begin], point, reach, foot, normal);
   }
-  if (*hint < all->branches.count && all->patch[*hint] == patch &&
-      foot_on(all, (int32_t)*hint, point, reach, foot, normal) && is_real(all, *foot))
+  if (*hint < all->branches.count && all->patch[*hint] == patch && foot_on(all, (int32_t)*hint, point, reach, foot, normal) &&
+      is_real(all, *foot))
     return true;
   laves__dual there;
   if (laves__tape_foot(all->solid.tape, all->solid.diagonal, point, reach, foot, &there)) {
@@ -205,15 +210,12 @@ static bool project_patch(const void *self, int32_t patch, laves__vec3 point, do
   site_question q = {.all = all, .p = point, .patch = patch};
   find_near(&q);
   double least = INFINITY;
-  bool real = false;
   for (int i = 0; i < q.count; i++) {
     laves__vec3 trial, n;
     if (!foot_on(all, q.near[i], point, reach, &trial, &n)) continue;
-    const double distance = v3_distance(trial, point);
-    const bool is = is_real(all, trial);
-    if ((real && !is) || (real == is && !(distance < least))) continue;
-    least = distance;
-    real = is;
+    const double cost = v3_distance(trial, point) + off_surface_cost * fabs(value_at(all, trial));
+    if (!(cost < least)) continue;
+    least = cost;
     *foot = trial;
     *normal = n;
     *hint = (uint32_t)q.near[i];

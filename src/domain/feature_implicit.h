@@ -50,8 +50,8 @@ typedef struct laves__implicit_features {
   double size; /* features that are longer are found; bounds the steps along creases */
   laves__code whole;
   laves__branches branches;
-  int32_t *patch;       /* [branch_capacity] while searching: parent in a forest of branches that are one patch; then the patch */
-  bool *seen;           /* [branch_capacity] the branch has a point on the surface */
+  int32_t *patch; /* [branch_capacity] while searching: parent in a forest of branches that are one patch; then the patch */
+  bool *seen;     /* [branch_capacity] the branch has a point on the surface */
   size_t branch_capacity, seen_capacity;
   laves__crease_piece *piece;
   size_t piece_capacity;
@@ -75,9 +75,9 @@ typedef struct laves__crease_search {
   laves_context *context;
   const laves__feature_wish *wish;
   laves__feature_lines *lines;
-  double probe;    /* the distance at which sides are looked at */
-  double step;     /* longest step along a crease */
-  double sagitta;  /* by how much a chord may miss its crease */
+  double probe;   /* the distance at which sides are looked at */
+  double step;    /* longest step along a crease */
+  double sagitta; /* by how much a chord may miss its crease */
   laves__point_grid corner_grid;
   uint32_t *corner_point; /* of each corner */
   size_t corner_capacity;
@@ -128,7 +128,8 @@ void laves__weak_borders_join(laves__crease_search *s);
 /* A corner, at a point met before if that is near. */
 bool laves__corner_add(laves__crease_search *s, laves__vec3 p, uint32_t *point);
 
-/* The piece nearest to p, within reach, of two patches or branches that are joined (left and right in any order), or LAVES__NONE. */
+/* The piece nearest to p, within reach, of two patches or branches that are joined (left and right in any order), or LAVES__NONE.
+ */
 uint32_t laves__piece_near(const laves__implicit_features *all, laves__vec3 p, double reach, int32_t a, int32_t b);
 
 #endif

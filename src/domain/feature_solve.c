@@ -58,8 +58,8 @@ static bool meet_planes(const laves__vec3 *n, const double *d, int count, laves_
   }
   const double volume = v3_dot(along, n[2]);
   if (!(fabs(volume) > least_volume)) return false;
-  const laves__vec3 sum = v3_add(v3_add(v3_scale(v3_cross(n[1], n[2]), d[0]), v3_scale(v3_cross(n[2], n[0]), d[1])),
-                                 v3_scale(along, d[2]));
+  const laves__vec3 sum =
+      v3_add(v3_add(v3_scale(v3_cross(n[1], n[2]), d[0]), v3_scale(v3_cross(n[2], n[0]), d[1])), v3_scale(along, d[2]));
   *step = v3_scale(sum, -1 / volume);
   return true;
 }

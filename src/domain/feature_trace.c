@@ -405,8 +405,8 @@ void laves__corners_complete(laves__crease_search *s) {
     for (int k = 0; k < count * count; k++) {
       const int32_t a = rival[k / count], b = rival[k % count];
       if (a == b) continue; /* both orders: the crease may leave on either side */
-      const laves__vec3 along = v3_unit(v3_cross(laves__tape_gradient(tape_of(s, a), p).gradient,
-                                                 laves__tape_gradient(tape_of(s, b), p).gradient));
+      const laves__vec3 along =
+          v3_unit(v3_cross(laves__tape_gradient(tape_of(s, a), p).gradient, laves__tape_gradient(tape_of(s, b), p).gradient));
       trace(s, v3_mad(p, along, corner_reach * s->probe), a, b, ahead * s->probe, ahead * s->probe);
     }
   }

@@ -651,16 +651,14 @@ int32_t laves__branches_add(laves__branches *b, const laves__signature *signatur
   }
   const size_t slot = slot_of(b, signature, hash);
   if (b->table[slot]) return b->known[b->table[slot] - 1].branch;
-  if (b->known_count == LAVES__SIGNATURE_LIMIT || b->pool_count + signature->count > LAVES__CHOICE_LIMIT)
-    return LAVES__NO_BRANCH;
+  if (b->known_count == LAVES__SIGNATURE_LIMIT || b->pool_count + signature->count > LAVES__CHOICE_LIMIT) return LAVES__NO_BRANCH;
   if (!laves__grow(b->context, &b->pool, &b->pool_capacity, b->pool_count + signature->count + 1, sizeof *b->pool) ||
       !laves__grow(b->context, &b->known, &b->known_capacity, b->known_count + 1, sizeof *b->known)) {
     b->out_of_memory = true;
     return LAVES__NO_BRANCH;
   }
   for (size_t i = 0; i < signature->count; i++) b->pool[b->pool_count + i] = signature->choices[i];
-  b->known[b->known_count] =
-      (known_signature){b->pool_count, (uint32_t)signature->count, make_branch(b, signature), hash};
+  b->known[b->known_count] = (known_signature){b->pool_count, (uint32_t)signature->count, make_branch(b, signature), hash};
   b->pool_count += signature->count;
   b->table[slot] = (uint32_t)++b->known_count;
   return b->known[b->known_count - 1].branch;

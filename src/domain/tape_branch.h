@@ -43,10 +43,10 @@ typedef struct laves__trail {
 /* Operands of an instruction by who makes them. */
 enum { LAVES__FROM_X = -3, LAVES__FROM_Y, LAVES__FROM_Z, LAVES__FROM_CONSTANT = -4 };
 typedef struct laves__code_item {
-  uint32_t origin;    /* instruction of the whole tape that it stands for */
-  int32_t source[3];  /* an item, or one of LAVES__FROM_ */
-  uint32_t trail[3];  /* of each operand, + 1 */
-  bool may_vanish;    /* a norm or a root that may be zero */
+  uint32_t origin;   /* instruction of the whole tape that it stands for */
+  int32_t source[3]; /* an item, or one of LAVES__FROM_ */
+  uint32_t trail[3]; /* of each operand, + 1 */
+  bool may_vanish;   /* a norm or a root that may be zero */
 } laves__code_item;
 
 typedef struct laves__code {

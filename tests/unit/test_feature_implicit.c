@@ -91,6 +91,10 @@ static void assert_sides(const found *f) {
     const laves__feature_segment *s = &f->lines.segment[i];
     const laves__vec3 a = f->lines.point[s->ends[0]], b = f->lines.point[s->ends[1]];
     const laves__vec3 along = v3_unit(v3_sub(b, a)), middle = v3_lerp(a, b, 0.5);
+    bool is_near_corner = false;
+    for (size_t j = 0; j < f->lines.point_count && !is_near_corner; j++)
+      is_near_corner = f->degree[j] != 2 && v3_distance(f->lines.point[j], middle) < 0.02 * f->diagonal;
+    if (is_near_corner || s->patch[0] == s->patch[1]) continue; /* equal where an edge fades away */
     laves__vec3 foot[2], normal[2];
     for (int k = 0; k < 2; k++) {
       uint32_t hint = LAVES__NO_HINT;
@@ -109,7 +113,8 @@ static void assert_sides(const found *f) {
       laves__vec3 on, n;
       uint32_t hint = LAVES__NO_HINT;
       if (!o->project(o->self, p, step, &hint, &on, &n)) fail_msg("segment %d: nothing beside it", (int)i);
-      assert_int_equal(f->features.patch_at(f->features.self, on, hint), s->patch[k]);
+      if (f->features.patch_at(f->features.self, on, hint) != s->patch[k])
+        fail_msg("segment %d at (%g, %g, %g): patch %d is not where it should be", (int)i, p.x, p.y, p.z, s->patch[k]);
       assert_true(v3_dot(n, normal[k]) > 0.95);
     }
   }
@@ -249,7 +254,9 @@ static void feet_lie_on_their_patch(void **state) {
       double phi;
       assert_true(f->features.project_patch(f->features.self, patch, off, f->diagonal, &hint, &foot, &normal));
       o->evaluate(o->self, 1, &foot, &phi, NULL);
-      assert_true(v3_distance(foot, points[i]) < 1e-3 * f->diagonal);
+      if (!(v3_distance(foot, points[i]) < 1e-3 * f->diagonal))
+        fail_msg("%s: patch %d at (%g, %g, %g): foot %g away", texts[k], patch, off.x, off.y, off.z,
+                 v3_distance(foot, points[i]));
       /* Close to a crease the foot may be on the patch's continuation, a little off the solid. */
       assert_true(fabs(phi) < 3e-4 * f->diagonal);
       const laves__vec3 far = v3_mad(points[i], normal, 0.1 * f->diagonal);
