@@ -201,9 +201,31 @@ bool laves__corner_add(laves__crease_search *s, laves__vec3 p, uint32_t *point) 
 
 /* ---- ends ---- */
 
-/* Branches that make the surface around a place: feet of points around it, in the 26 directions of a cube. */
-static int find_rivals(laves__crease_search *s, laves__vec3 c, int32_t *rival) {
-  int count = 0;
+typedef struct rivals {
+  const laves__crease_search *s;
+  laves__vec3 c;
+  int32_t branch[RIVAL_LIMIT];
+  int count;
+} rivals;
+
+static void add_rival(rivals *r, int32_t branch) {
+  for (int i = 0; i < r->count; i++)
+    if (r->branch[i] == branch) return;
+  if (r->count < RIVAL_LIMIT) r->branch[r->count++] = branch;
+}
+
+/* A branch met in the cells around here is a rival if its zero passes close by. */
+static void consider_site(void *user, uint32_t index) {
+  rivals *r = user;
+  const int32_t branch = r->s->all->site_branch[index];
+  const laves__dual at = laves__tape_gradient(tape_of(r->s, branch), r->c);
+  if (fabs(at.value) <= rival_radius * r->s->probe * v3_norm(at.gradient)) add_rival(r, branch);
+}
+
+/* Branches that make the surface around a place: feet of points around it, in the 26 directions of a cube, and what the
+ * cells know, as from outside an edge all feet may be on the edge. */
+static rivals find_rivals(laves__crease_search *s, laves__vec3 c) {
+  rivals r = {.s = s, .c = c};
   for (int k = 0; k < 27; k++) {
     const laves__vec3 direction = v3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
     laves__vec3 foot;
@@ -212,20 +234,19 @@ static int find_rivals(laves__crease_search *s, laves__vec3 c, int32_t *rival) {
     if (!laves__tape_foot(s->all->solid.tape, s->all->solid.diagonal, from, 2 * rival_radius * s->probe, &foot, &there)) continue;
     laves__vec3 normal = v3_unit(there.gradient);
     const int32_t b = laves__branch_of_foot(s, &s->all->whole, foot, &normal, 0.25 * s->probe);
-    bool known = b == LAVES__NO_BRANCH;
-    for (int i = 0; i < count && !known; i++) known = rival[i] == b;
-    if (!known && count < RIVAL_LIMIT) rival[count++] = b;
+    if (b != LAVES__NO_BRANCH) add_rival(&r, b);
   }
-  return count;
+  laves__point_grid_near(&s->all->site_grid, c, consider_site, &r);
+  return r;
 }
 
 /* The point near the end where a third function vanishes as well. */
-static bool find_corner(const laves__crease_search *s, const spot *last, const int32_t *rival, int count, laves__vec3 *corner) {
+static bool find_corner(const laves__crease_search *s, const spot *last, const rivals *r, laves__vec3 *corner) {
   const double reach = corner_reach * s->probe, diagonal = s->all->solid.diagonal;
   double least = INFINITY;
-  for (int i = 0; i < count; i++) {
-    if (rival[i] == last->branch[0] || rival[i] == last->branch[1]) continue;
-    const laves__tape *f[3] = {tape_of(s, last->branch[0]), tape_of(s, last->branch[1]), tape_of(s, rival[i])};
+  for (int i = 0; i < r->count; i++) {
+    if (r->branch[i] == last->branch[0] || r->branch[i] == last->branch[1]) continue;
+    const laves__tape *f[3] = {tape_of(s, last->branch[0]), tape_of(s, last->branch[1]), tape_of(s, r->branch[i])};
     const laves__vec3 normal = v3_unit(laves__tape_gradient(f[2], last->p).gradient);
     if (fabs(v3_dot(normal, last->tangent)) < smooth_turn) continue; /* touches the crease, if at all */
     laves__vec3 p = last->p;
@@ -241,14 +262,13 @@ static bool find_corner(const laves__crease_search *s, const spot *last, const i
 }
 
 /* Picks the crease up again, with other functions that continue those of `last` smoothly. */
-static bool find_continuation(const laves__crease_search *s, const spot *last, double way, const int32_t *rival, int count,
-                              spot *next) {
+static bool find_continuation(const laves__crease_search *s, const spot *last, double way, const rivals *r, spot *next) {
   double least = 2 * smooth_turn;
-  for (int i = -1; i < count; i++)
-    for (int j = -1; j < count; j++) {
+  for (int i = -1; i < r->count; i++)
+    for (int j = -1; j < r->count; j++) {
       spot a = *last;
-      if (i >= 0) a.branch[0] = rival[i];
-      if (j >= 0) a.branch[1] = rival[j];
+      if (i >= 0) a.branch[0] = r->branch[i];
+      if (j >= 0) a.branch[1] = r->branch[j];
       if ((i < 0 && j < 0) || a.branch[0] == a.branch[1]) continue;
       a.p = v3_mad(last->p, last->tangent, way * ahead * s->probe);
       if (!put_on_crease(s, a.branch, 0.5 * ahead * s->probe, &a.p)) continue;
@@ -287,16 +307,15 @@ static void join_sides(laves__crease_search *s, const spot *a, const spot *b) {
 /* Ends a crease, or goes on with other functions: then true, and `here` is the first spot of them. */
 static bool pass_end(laves__crease_search *s, spot *here, double way, double h) {
   spot last = find_end(s, here, way, h), next;
-  int32_t rival[RIVAL_LIMIT];
-  const int count = find_rivals(s, v3_mad(last.p, last.tangent, 2 * way * s->probe), rival);
+  const rivals r = find_rivals(s, v3_mad(last.p, last.tangent, 2 * way * s->probe));
   laves__vec3 corner;
-  if (find_corner(s, &last, rival, count, &corner)) {
+  if (find_corner(s, &last, &r, &corner)) {
     if (!laves__corner_add(s, corner, &last.point)) return false;
     last.p = s->lines->point[last.point];
     if (last.point != here->point) add_step(s, here, &last, way);
     return false;
   }
-  if (find_continuation(s, &last, way, rival, count, &next) && add_point(s, &next)) {
+  if (find_continuation(s, &last, way, &r, &next) && add_point(s, &next)) {
     join_sides(s, &last, &next);
     spot end = *here; /* the piece has the functions that it started with */
     end.p = next.p;
@@ -400,10 +419,9 @@ void laves__crease_trace(laves__crease_search *s, laves__vec3 start, int32_t a, 
 void laves__corners_complete(laves__crease_search *s) {
   for (size_t i = 0; i < s->corner_grid.count && laves__search_goes_on(s); i++) { /* corners are added on the way */
     const laves__vec3 p = s->corner_grid.at[i];
-    int32_t rival[RIVAL_LIMIT];
-    const int count = find_rivals(s, p, rival);
-    for (int k = 0; k < count * count; k++) {
-      const int32_t a = rival[k / count], b = rival[k % count];
+    const rivals r = find_rivals(s, p);
+    for (int k = 0; k < r.count * r.count; k++) {
+      const int32_t a = r.branch[k / r.count], b = r.branch[k % r.count];
       if (a == b) continue; /* both orders: the crease may leave on either side */
       const laves__vec3 along =
           v3_unit(v3_cross(laves__tape_gradient(tape_of(s, a), p).gradient, laves__tape_gradient(tape_of(s, b), p).gradient));
