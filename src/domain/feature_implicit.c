@@ -37,6 +37,7 @@ static void search(laves__crease_search *s) {
   if (!s->out_of_memory) laves__corners_complete(s);
   if (!s->out_of_memory) laves__weak_borders_join(s);
   laves__free(s->context, s->weak, s->weak_capacity, sizeof *s->weak);
+  laves__free(s->context, s->loose, s->loose_capacity, sizeof *s->loose);
   laves__free(s->context, s->sample, s->sample_capacity, sizeof *s->sample);
   laves__branch_room_free(s->context, &s->room);
 }

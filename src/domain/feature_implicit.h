@@ -70,6 +70,14 @@ typedef struct laves__weak_border {
   int32_t branch[2];
 } laves__weak_border;
 
+/* Where a crease ended without a corner that could be found. */
+typedef struct laves__loose_end {
+  laves__vec3 p;
+  int32_t branch[2];
+  uint32_t point;
+  double way; /* along the crease, 1 or -1 */
+} laves__loose_end;
+
 typedef struct laves__crease_search {
   laves__implicit_features *all;
   laves_context *context;
@@ -83,6 +91,8 @@ typedef struct laves__crease_search {
   size_t corner_capacity;
   laves__weak_border *weak;
   size_t weak_count, weak_capacity;
+  laves__loose_end *loose;
+  size_t loose_count, loose_capacity;
   laves__vec3 *sample; /* [sample_capacity] a foot of each branch */
   size_t sample_capacity;
   laves__code *level; /* codes of the cells on the way down */

@@ -304,6 +304,14 @@ static void join_sides(laves__crease_search *s, const spot *a, const spot *b) {
   for (int i = 0; i < 2; i++) laves__branches_join(s->all, a->branch[i], b->branch[i]);
 }
 
+static void note_loose(laves__crease_search *s, const spot *last, double way) {
+  if (!laves__grow(s->context, &s->loose, &s->loose_capacity, s->loose_count + 1, sizeof *s->loose)) {
+    s->out_of_memory = true;
+    return;
+  }
+  s->loose[s->loose_count++] = (laves__loose_end){last->p, {last->branch[0], last->branch[1]}, last->point, way};
+}
+
 /* Ends a crease, or goes on with other functions: then true, and `here` is the first spot of them. */
 static bool pass_end(laves__crease_search *s, spot *here, double way, double h) {
   spot last = find_end(s, here, way, h), next;
@@ -324,7 +332,7 @@ static bool pass_end(laves__crease_search *s, spot *here, double way, double h) 
     *here = next;
     return true;
   }
-  if (v3_distance(last.p, here->p) > s->probe && add_point(s, &last)) add_step(s, here, &last, way);
+  if (v3_distance(last.p, here->p) > s->probe && add_point(s, &last) && add_step(s, here, &last, way)) note_loose(s, &last, way);
   return false;
 }
 
@@ -416,7 +424,24 @@ void laves__crease_trace(laves__crease_search *s, laves__vec3 start, int32_t a, 
   trace(s, start, a, b, s->all->size, 4 * s->sagitta);
 }
 
+/* Ends that came when the cells around were still to be searched. */
+static void tie_loose_ends(laves__crease_search *s) {
+  for (size_t i = 0; i < s->loose_count && laves__search_goes_on(s); i++) {
+    const laves__loose_end end = s->loose[i];
+    spot last = {.p = end.p, .branch = {end.branch[0], end.branch[1]}, .point = end.point};
+    look_around(s, &last);
+    if (last.meeting == LAVES__NOT_MET) continue;
+    const rivals r = find_rivals(s, v3_mad(last.p, last.tangent, 2 * end.way * s->probe));
+    laves__vec3 corner;
+    spot there = last;
+    if (!find_corner(s, &last, &r, &corner) || !laves__corner_add(s, corner, &there.point)) continue;
+    there.p = s->lines->point[there.point];
+    add_step(s, &last, &there, end.way);
+  }
+}
+
 void laves__corners_complete(laves__crease_search *s) {
+  tie_loose_ends(s);
   for (size_t i = 0; i < s->corner_grid.count && laves__search_goes_on(s); i++) { /* corners are added on the way */
     const laves__vec3 p = s->corner_grid.at[i];
     const rivals r = find_rivals(s, p);
