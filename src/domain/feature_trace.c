@@ -261,25 +261,39 @@ static bool find_corner(const laves__crease_search *s, const spot *last, const r
   return least < INFINITY;
 }
 
-/* Picks the crease up again, with other functions that continue those of `last` smoothly. */
+static bool has_leaf(const laves__tape *tape) {
+  for (size_t i = 0; i < tape->count; i++)
+    if (tape->instructions[i].op == LAVES__OP_LEAF) return true;
+  return false;
+}
+
+/* By how much normals may turn where a crease goes on: leaves are made of flat faces, and turn from one to the next. */
+static double smooth_limit(const laves__crease_search *s, int32_t branch) {
+  const double half = 0.5 / degrees * s->wish->angle;
+  return has_leaf(tape_of(s, branch)) ? 2 * sin_of(half) : smooth_turn;
+}
+
+/* Picks the crease up again, with other functions that continue those of `last` smoothly, or on the next face of a leaf. */
 static bool find_continuation(const laves__crease_search *s, const spot *last, double way, const rivals *r, spot *next) {
-  double least = 2 * smooth_turn;
+  const double limit[2] = {smooth_limit(s, last->branch[0]), smooth_limit(s, last->branch[1])};
+  double least = INFINITY;
   for (int i = -1; i < r->count; i++)
     for (int j = -1; j < r->count; j++) {
       spot a = *last;
       if (i >= 0) a.branch[0] = r->branch[i];
       if (j >= 0) a.branch[1] = r->branch[j];
-      if ((i < 0 && j < 0) || a.branch[0] == a.branch[1]) continue;
+      const bool same = a.branch[0] == last->branch[0] && a.branch[1] == last->branch[1];
+      if ((same && max_of(limit[0], limit[1]) == smooth_turn) || a.branch[0] == a.branch[1]) continue;
       a.p = v3_mad(last->p, last->tangent, way * ahead * s->probe);
       if (!put_on_crease(s, a.branch, 0.5 * ahead * s->probe, &a.p)) continue;
       look_around(s, &a);
       if (a.meeting != last->meeting || a.turn < weak_part * s->wish->angle) continue;
       const double turn0 = v3_distance(a.normal[0], last->normal[0]), turn1 = v3_distance(a.normal[1], last->normal[1]);
-      if (turn0 > smooth_turn || turn1 > smooth_turn || turn0 + turn1 >= least) continue;
+      if (turn0 > limit[0] || turn1 > limit[1] || turn0 + turn1 >= least) continue;
       least = turn0 + turn1;
       *next = a;
     }
-  return least < 2 * smooth_turn;
+  return least < INFINITY;
 }
 
 /* The last spot before the end that a step of length h has passed. */
@@ -323,12 +337,16 @@ static bool pass_end(laves__crease_search *s, spot *here, double way, double h) 
     if (last.point != here->point) add_step(s, here, &last, way);
     return false;
   }
-  if (find_continuation(s, &last, way, &r, &next) && add_point(s, &next)) {
+  if (find_continuation(s, &last, way, &r, &next)) {
     join_sides(s, &last, &next);
-    spot end = *here; /* the piece has the functions that it started with */
+    if (last.point == here->point && v3_distance(last.p, here->p) > 0) {
+      if (!add_point(s, &last) || !add_step(s, here, &last, way)) return false;
+    }
+    if (!add_point(s, &next)) return false;
+    spot end = last; /* the piece has the functions that it started with */
     end.p = next.p;
     end.point = next.point;
-    if (!add_step(s, here, &end, way)) return false;
+    if (!add_step(s, &last, &end, way)) return false;
     *here = next;
     return true;
   }
@@ -405,6 +423,40 @@ static bool leads_on(const laves__crease_search *s, const spot *a) {
   return advance(s, a, 1, lead * s->probe, &there) == WENT || advance(s, a, -1, lead * s->probe, &there) == WENT;
 }
 
+/* Other branches may be the same functions but for rounding, as the tops of boxes that stand side by side. */
+typedef struct twin_question {
+  const laves__crease_search *s;
+  const spot *a;
+  double reach;
+  int32_t twin[2]; /* of the spot's branches */
+  bool found;
+} twin_question;
+
+static bool is_twin(const laves__crease_search *s, const spot *a, int side, int32_t branch) {
+  if (branch == a->branch[side]) return true;
+  const laves__dual at = laves__tape_gradient(tape_of(s, branch), a->p);
+  const double slope = v3_norm(at.gradient);
+  return fabs(at.value) <= equal_part * s->probe * slope && v3_dot(at.gradient, a->normal[side]) > 0.9999 * slope;
+}
+
+static void look_for_twins(void *user, uint32_t index) {
+  twin_question *q = user;
+  const laves__crease_piece *c = &q->s->all->piece[index];
+  if (q->found || distance2_to_piece(c, q->a->p) > q->reach * q->reach) return;
+  for (int k = 0; k < 2 && !q->found; k++) {
+    q->found = is_twin(q->s, q->a, 0, c->branch[k]) && is_twin(q->s, q->a, 1, c->branch[1 - k]);
+    q->twin[0] = c->branch[k];
+    q->twin[1] = c->branch[1 - k];
+  }
+}
+
+static bool has_twin(laves__crease_search *s, const spot *a, double reach) {
+  twin_question q = {.s = s, .a = a, .reach = reach};
+  laves__point_grid_near(&s->all->piece_grid, a->p, look_for_twins, &q);
+  for (int k = 0; k < 2 && q.found; k++) laves__branches_join(s->all, a->branch[k], q.twin[k]);
+  return q.found;
+}
+
 /* reach: how far the crease may be from the start; near: how near a piece that has been found must be to be the same. */
 static void trace(laves__crease_search *s, laves__vec3 start, int32_t a, int32_t b, double reach, double near) {
   spot first = {.p = start, .branch = {a, b}};
@@ -415,7 +467,7 @@ static void trace(laves__crease_search *s, laves__vec3 start, int32_t a, int32_t
     note_weak(s, &first);
     return;
   }
-  if (laves__piece_near(s->all, first.p, near, a, b) != LAVES__NONE) return;
+  if (laves__piece_near(s->all, first.p, near, a, b) != LAVES__NONE || has_twin(s, &first, near)) return;
   if (!leads_on(s, &first) || !add_point(s, &first)) return;
   if (!follow(s, &first, 1)) follow(s, &first, -1);
 }
