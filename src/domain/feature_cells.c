@@ -108,6 +108,7 @@ static bool parts_space(const laves__tape *solid, laves__vec3 foot, laves__vec3 
 int32_t laves__branch_of_foot(laves__crease_search *s, const laves__code *code, laves__vec3 foot, laves__vec3 *normal,
                               double depth) {
   laves__branches *branches = &s->all->branches;
+  s->work += 8 * (double)code->tape.count;
   if (!parts_space(&code->tape, foot, *normal, depth)) return LAVES__NO_BRANCH;
   for (int side = -1; side <= 1; side += 2) {
     laves__signature signature;
@@ -472,9 +473,13 @@ void laves__search_walks(laves__crease_search *s) {
 /* How many of the smallest cells are searched at most; then cells twice as wide are taken. */
 enum { CELL_LIMIT = 2000000, DEPTH_LIMIT = 12 };
 
+/* What the cells take of the whole search, roughly. */
+static const double cells_part = 0.9;
+
 static void visit(laves__crease_search *s, laves__box3 cell, int level, int depth) {
   if (!laves__search_goes_on(s) || s->crowded) return;
   const laves__code *code = &s->level[level];
+  s->work += 2 * (double)code->tape.count;
   bool may_be_nan;
   const laves__interval value = laves__tape_interval(&code->tape, cell, &may_be_nan);
   if (!may_be_nan && (value.lower > 0 || value.upper < 0)) return;
@@ -485,7 +490,7 @@ static void visit(laves__crease_search *s, laves__box3 cell, int level, int dept
   code = &s->level[level + 1];
   if (code->open_count == 0 && see_branch(s, code, cell)) return;
   if (level == depth) {
-    s->crowded = ++s->cell_count > CELL_LIMIT;
+    s->crowded = ++s->cell_count > CELL_LIMIT || s->work > LAVES__CELL_WORK;
     if (code->open_count > 0) search_cell(s, code, cell);
     return;
   }
@@ -494,6 +499,7 @@ static void visit(laves__crease_search *s, laves__box3 cell, int level, int dept
     const laves__box3 part = {{i & 1 ? c.x : cell.lower.x, i & 2 ? c.y : cell.lower.y, i & 4 ? c.z : cell.lower.z},
                               {i & 1 ? cell.upper.x : c.x, i & 2 ? cell.upper.y : c.y, i & 4 ? cell.upper.z : c.z}};
     visit(s, part, level + 1, depth);
+    if (level == 1) s->fraction += cells_part / 64;
   }
 }
 
@@ -518,6 +524,7 @@ static void forget(laves__crease_search *s) {
   laves__point_grid_init(&s->corner_grid, context, corner_width);
   s->lines->point_count = s->lines->fixed_count = s->weak_count = s->loose_count = 0;
   s->cell_count = 0;
+  s->work = s->fraction = 0;
   s->crowded = false;
 }
 

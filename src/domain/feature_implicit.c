@@ -20,7 +20,7 @@ enum { TRIED_MEMBERS = 16, NEAR_MEMBERS = 32 };
 /* ---- the search ---- */
 
 bool laves__search_goes_on(laves__crease_search *s) {
-  if (s->out_of_memory || s->cancelled) return false;
+  if (s->out_of_memory || s->cancelled || s->work > LAVES__SEARCH_WORK) return false;
   if (++s->asked % 256 == 0) s->cancelled = laves__cancelled(s->context, "features", s->fraction);
   return !s->cancelled;
 }
@@ -193,6 +193,13 @@ static bool project_patch(const void *self, int32_t patch, laves__vec3 point, do
                           laves__vec3 *normal) {
   const laves__implicit_features *all = self;
   const uint32_t begin = patch > 0 ? all->member_end[patch - 1] : 0, end = all->member_end[patch];
+  laves__dual there;
+  if (all->features->patch_count == 1) {
+    *hint = LAVES__NO_HINT;
+    if (!laves__tape_foot(all->solid.tape, all->solid.diagonal, point, reach, foot, &there)) return false;
+    *normal = v3_unit(there.gradient);
+    return true;
+  }
   if (end == begin + 1) {
     *hint = all->members[begin];
     return foot_on(all, (int32_t)all->members[begin], point, reach, foot, normal);
@@ -200,7 +207,6 @@ static bool project_patch(const void *self, int32_t patch, laves__vec3 point, do
   if (*hint < all->branches.count && all->patch[*hint] == patch && foot_on(all, (int32_t)*hint, point, reach, foot, normal) &&
       is_real(all, *foot))
     return true;
-  laves__dual there;
   if (laves__tape_foot(all->solid.tape, all->solid.diagonal, point, reach, foot, &there)) {
     const int32_t b = known_branch(all, *foot, v3_unit(there.gradient));
     if (b != LAVES__NO_BRANCH && all->patch[b] == patch && foot_on(all, b, point, reach, foot, normal)) {

@@ -100,8 +100,14 @@ typedef struct laves__crease_search {
   size_t cell_count;
   unsigned asked;
   double fraction; /* of the search that is done, roughly */
+  double work;     /* instructions run, roughly */
   bool out_of_memory, cancelled, crowded;
 } laves__crease_search;
+
+/* Instructions that a search may run, a minute or two; then it ends with what it has found. When the cells alone take the
+ * second, wider ones are taken. */
+#define LAVES__SEARCH_WORK 1e10
+#define LAVES__CELL_WORK 2e9
 
 /* Whether the search goes on; asks the caller now and then. */
 bool laves__search_goes_on(laves__crease_search *s);
@@ -124,7 +130,7 @@ void laves__search_walks(laves__crease_search *s);
 
 /* How two branches meet at a point of both. */
 typedef enum laves__meeting { LAVES__NOT_MET, LAVES__CONVEX, LAVES__CONCAVE } laves__meeting;
-laves__meeting laves__branches_meet(const laves__crease_search *s, laves__vec3 p, const int32_t branch[2], laves__vec3 normal[2],
+laves__meeting laves__branches_meet(laves__crease_search *s, laves__vec3 p, const int32_t branch[2], laves__vec3 normal[2],
                                     double *turn);
 
 /* Follows the crease of two branches through a point near it, unless that has been done; the pieces go to s->all. */

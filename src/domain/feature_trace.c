@@ -38,9 +38,10 @@ static const double degrees = 57.29577951308232;
 
 static const laves__tape *tape_of(const laves__crease_search *s, int32_t branch) { return &s->all->branches.tape[branch]; }
 
-laves__meeting laves__branches_meet(const laves__crease_search *s, laves__vec3 p, const int32_t branch[2], laves__vec3 normal[2],
+laves__meeting laves__branches_meet(laves__crease_search *s, laves__vec3 p, const int32_t branch[2], laves__vec3 normal[2],
                                     double *turn) {
   double slope[2];
+  s->work += 5 * (double)s->all->whole.tape.count;
   for (int i = 0; i < 2; i++) {
     const laves__dual at = laves__tape_gradient(tape_of(s, branch[i]), p);
     slope[i] = v3_norm(at.gradient);
@@ -82,7 +83,7 @@ typedef struct spot {
 static double inner_angle(const spot *a) { return a->meeting == LAVES__CONVEX ? 180 - a->turn : 180 + a->turn; }
 
 /* Seen from outside, the face of n is left of n x m where that face ends at a convex edge, right of it at a notch. */
-static void look_around(const laves__crease_search *s, spot *a) {
+static void look_around(laves__crease_search *s, spot *a) {
   a->meeting = laves__branches_meet(s, a->p, a->branch, a->normal, &a->turn);
   const laves__vec3 along = v3_unit(v3_cross(a->normal[0], a->normal[1]));
   a->tangent = a->meeting == LAVES__CONCAVE ? v3_scale(along, -1) : along;
@@ -96,7 +97,7 @@ static bool put_on_crease(const laves__crease_search *s, const int32_t branch[2]
 typedef enum outcome { WENT, TOO_LONG, ENDED, FADED } outcome;
 
 /* A step of length h, along the tangent for way = 1, against it for -1. */
-static outcome advance(const laves__crease_search *s, const spot *from, double way, double h, spot *to) {
+static outcome advance(laves__crease_search *s, const spot *from, double way, double h, spot *to) {
   *to = *from;
   const laves__vec3 ahead_of = v3_scale(from->tangent, way);
   to->p = v3_mad(from->p, ahead_of, h);
@@ -274,7 +275,7 @@ static double smooth_limit(const laves__crease_search *s, int32_t branch) {
 }
 
 /* Picks the crease up again, with other functions that continue those of `last` smoothly, or on the next face of a leaf. */
-static bool find_continuation(const laves__crease_search *s, const spot *last, double way, const rivals *r, spot *next) {
+static bool find_continuation(laves__crease_search *s, const spot *last, double way, const rivals *r, spot *next) {
   const double limit[2] = {smooth_limit(s, last->branch[0]), smooth_limit(s, last->branch[1])};
   double least = INFINITY;
   for (int i = -1; i < r->count; i++)
@@ -297,7 +298,7 @@ static bool find_continuation(const laves__crease_search *s, const spot *last, d
 }
 
 /* The last spot before the end that a step of length h has passed. */
-static spot find_end(const laves__crease_search *s, const spot *from, double way, double h) {
+static spot find_end(laves__crease_search *s, const spot *from, double way, double h) {
   spot last = *from, trial;
   double sure = 0;
   while (h - sure > 0.5 * s->probe) {
@@ -418,7 +419,7 @@ static bool follow(laves__crease_search *s, const spot *start, double way) {
 }
 
 /* At corners faces touch that have no crease in common. */
-static bool leads_on(const laves__crease_search *s, const spot *a) {
+static bool leads_on(laves__crease_search *s, const spot *a) {
   spot there;
   return advance(s, a, 1, lead * s->probe, &there) == WENT || advance(s, a, -1, lead * s->probe, &there) == WENT;
 }

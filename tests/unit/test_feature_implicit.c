@@ -436,6 +436,34 @@ static void searches_can_be_cancelled(void **state) {
   laves_context_free(context);
 }
 
+/* Whatever the limit, the search says so or ends well, and gives back what it took. */
+static void memory_may_run_short(void **state) {
+  (void)state;
+  int refused = 0, done = 0;
+  for (size_t limit = 40000; limit < 4000000; limit += limit / 3) {
+    laves_error error;
+    laves_domain *domain;
+    laves_context_options options = laves_context_options_default();
+    options.memory_limit = limit;
+    laves_context *context = laves_context_create(&options);
+    if (laves_domain_from_expression(context, "box(1, 1, 1) - sphere(0.6)", &domain, &error) == LAVES_OK) {
+      const laves__feature_wish wish = {.angle = 40, .size = 0.03};
+      laves__features features = {.context = context, .oracle = &domain->oracle};
+      laves__feature_lines lines = {.context = context};
+      const laves_result result = domain->oracle.find_features(&wish, &features, &lines, &error);
+      assert_true(result == LAVES_OK || result == LAVES_ERROR_MEMORY);
+      refused += result == LAVES_ERROR_MEMORY;
+      done += result == LAVES_OK;
+      if (features.free_self) features.free_self(context, features.self);
+      laves__feature_lines_free(&lines);
+      laves_domain_free(domain);
+    }
+    assert_int_equal(laves_context_bytes(context), 0);
+    laves_context_free(context);
+  }
+  assert_true(refused > 2 && done > 2);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(creases_and_corners_are_all_found),
@@ -449,6 +477,7 @@ int main(void) {
       cmocka_unit_test(leaves_meet_the_rest),
       cmocka_unit_test(random_solids_are_survived),
       cmocka_unit_test(searches_can_be_cancelled),
+      cmocka_unit_test(memory_may_run_short),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
