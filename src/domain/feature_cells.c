@@ -30,6 +30,11 @@ enum { WALK_LIMIT = 4096, WALK_STEPS = 32, WALK_DIRECTIONS = 27, WALK_CUT = 4 };
 static const double spread = 0.75;
 /* How far beside a foot that tells nothing others are looked for, in widths of the cell and its surroundings. */
 static const double beside = 0.1;
+/* A foot between two that is further from both than this part of their distance is on another sheet. */
+static const double no_nearer = 0.95;
+/* Around tips normals are compared so many probes away; a tip is on the surface where the value is below this part of the
+ * diagonal. */
+static const double tip_radius = 8, zero_part = 1e-9;
 /* Feet of different branches closer than this part of the size lie on both sides of their border. */
 static const double adjacent = 1e-3;
 /* Smooth borders that are known are not looked at where normals turn by less than this part of the wished angle. */
@@ -161,7 +166,7 @@ static void cross_border(laves__crease_search *s, const laves__code *code, label
     labelled_foot m;
     if (distance <= close) break;
     if (!find_foot(s, code, v3_lerp(a.p, b.p, 0.5), distance, &m) || !label_foot(s, code, &m)) break;
-    if (v3_distance(m.p, a.p) > 0.95 * distance && v3_distance(m.p, b.p) > 0.95 * distance) break;
+    if (v3_distance(m.p, a.p) > no_nearer * distance && v3_distance(m.p, b.p) > no_nearer * distance) break;
     if (m.branch == a.branch)
       a = m;
     else
@@ -198,8 +203,8 @@ static bool is_pointed(const laves__crease_search *s, laves__vec3 p) {
     const laves__vec3 direction = v3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
     laves__dual there;
     laves__vec3 foot;
-    if (!laves__tape_foot(s->all->solid.tape, s->all->solid.diagonal, v3_mad(p, v3_unit(direction), 8 * s->probe), 16 * s->probe,
-                          &foot, &there))
+    if (!laves__tape_foot(s->all->solid.tape, s->all->solid.diagonal, v3_mad(p, v3_unit(direction), tip_radius * s->probe),
+                          2 * tip_radius * s->probe, &foot, &there))
       continue;
     normal[count] = v3_unit(there.gradient);
     for (int i = 0; i < count; i++)
@@ -266,7 +271,7 @@ static void find_tips(laves__crease_search *s, laves__box3 around, int32_t branc
           p.y <= around.upper.y && p.z <= around.upper.z))
       continue;
     laves__tape_evaluate(s->all->solid.tape, 1, &p, &phi);
-    if (fabs(phi) > 1e-9 * s->all->solid.diagonal || !is_pointed(s, p)) continue;
+    if (fabs(phi) > zero_part * s->all->solid.diagonal || !is_pointed(s, p)) continue;
     if (!laves__corner_add(s, p, &point) || is_fixed(s->lines, point)) continue;
     if (!laves__feature_lines_fix(s->lines, point, branch)) s->out_of_memory = true;
   }

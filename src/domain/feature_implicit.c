@@ -8,6 +8,8 @@
 /* Fractions of the diagonal: how far to the side a point of a crease is looked at (thinner parts are not seen; rounding is
  * a millionth of it), and by how much a chord may miss its crease. */
 static const double probe_part = 1e-6, sagitta_part = 5e-5;
+/* Cells in which corners are looked up, in probes: wider than those that are merged. */
+static const double corner_cell = 64;
 /* Sizes above this part of the diagonal are too coarse to find a solid's own creases, those below too fine to search. */
 static const double largest_size = 1.0 / 24, least_size = 1.0 / 3000;
 /* Parts of the size: the longest step along a crease, and by how much a chord may miss it where that is less than the above. */
@@ -239,16 +241,10 @@ typedef struct refine_question {
   uint32_t best;
 } refine_question;
 
-static double middle_distance2(const laves__crease_piece *c, laves__vec3 p) {
-  const laves__vec3 along = v3_sub(c->ends[1], c->ends[0]);
-  const double length2 = v3_norm2(along), t = length2 > 0 ? v3_dot(v3_sub(p, c->ends[0]), along) / length2 : 0;
-  return v3_norm2(v3_sub(p, v3_mad(c->ends[0], along, min_of(max_of(t, 0), 1))));
-}
-
 static void measure(void *user, uint32_t index) {
   refine_question *q = user;
   const laves__crease_piece *c = &q->all->piece[index];
-  const double distance2 = middle_distance2(c, q->p);
+  const double distance2 = laves__piece_distance2(c, q->p);
   const int32_t l = q->all->patch[c->branch[0]], r = q->all->patch[c->branch[1]];
   if (!(l == q->patch[0] && r == q->patch[1]) && !(l == q->patch[1] && r == q->patch[0])) return;
   if (distance2 > q->distance2 || (distance2 == q->distance2 && index >= q->best)) return;
@@ -315,7 +311,7 @@ laves_result laves__features_of_implicit(const laves__implicit_solid *solid, con
                             .probe = probe_part * solid->diagonal,
                             .step = step_part * all->size,
                             .sagitta = min_of(sagitta_part * solid->diagonal, sagitta_of_size * all->size)};
-  laves__point_grid_init(&s.corner_grid, context, 64 * s.probe);
+  laves__point_grid_init(&s.corner_grid, context, corner_cell * s.probe);
   s.out_of_memory = !laves__code_whole(context, solid->tape, &all->whole);
   if (!s.out_of_memory) search(&s);
   laves__free(context, s.corner_point, s.corner_capacity, sizeof *s.corner_point);

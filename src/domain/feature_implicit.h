@@ -44,6 +44,9 @@ typedef struct laves__crease_piece {
   double angle;       /* inside, degrees */
 } laves__crease_piece;
 
+/* Squared distance from p to the chord. */
+double laves__piece_distance2(const laves__crease_piece *piece, laves__vec3 p);
+
 typedef struct laves__implicit_features {
   const laves__features *features;
   laves__implicit_solid solid;
@@ -128,11 +131,6 @@ void laves__search_cells(laves__crease_search *s);
 /* The same from points of all patches found so far, along the surface. */
 void laves__search_walks(laves__crease_search *s);
 
-/* How two branches meet at a point of both. */
-typedef enum laves__meeting { LAVES__NOT_MET, LAVES__CONVEX, LAVES__CONCAVE } laves__meeting;
-laves__meeting laves__branches_meet(laves__crease_search *s, laves__vec3 p, const int32_t branch[2], laves__vec3 normal[2],
-                                    double *turn);
-
 /* Follows the crease of two branches through a point near it, unless that has been done; the pieces go to s->all. */
 void laves__crease_trace(laves__crease_search *s, laves__vec3 start, int32_t a, int32_t b);
 
@@ -143,9 +141,5 @@ void laves__weak_borders_join(laves__crease_search *s);
 
 /* A corner, at a point met before if that is near. */
 bool laves__corner_add(laves__crease_search *s, laves__vec3 p, uint32_t *point);
-
-/* The piece nearest to p, within reach, of two patches or branches that are joined (left and right in any order), or LAVES__NONE.
- */
-uint32_t laves__piece_near(const laves__implicit_features *all, laves__vec3 p, double reach, int32_t a, int32_t b);
 
 #endif

@@ -32,14 +32,33 @@ static const double rival_radius = 6, corner_reach = 64, ahead = 16, lead = 8;
 /* A crease goes on until its angle is below this part of the wished one: fewer ends in the open, and patches that stay apart. */
 static const double weak_part = 0.25;
 
+/* Below this sine two normals are one: the probes would be too far off the faces. */
+static const double least_sine = 1e-6;
+/* A value of the solid below this part of the diagonal is zero at a corner that was solved for: far above rounding, and below
+ * what any third function makes of the distances looked at here. */
+static const double zero_part = 1e-9;
+/* In probes: corners that are one, the depth at which rivals are told, steps that are too short to be halved, how exactly ends
+ * are found. */
+static const double corner_merge = 8, rival_depth = 0.25, least_step = 4, end_width = 0.5;
+/* Parts of the longest step below which a crease that fades is given up. */
+static const double fade_step = 1.0 / 16;
+/* A ring is closed by a step of at most so many planned ones that ends within this part of its length from the start. */
+static const double closing_reach = 1.5, closing_miss = 0.05;
+/* A crease was found before where a piece passes within so many of the distances that chords may miss their creases by. */
+static const double found_before = 4;
+/* Cosine of the angle below which gradients of twins are the same. */
+static const double twin_cosine = 0.9999;
+
 static const double degrees = 57.29577951308232;
 
 /* ---- how branches meet ---- */
 
+typedef enum meeting_kind { NOT_MET, CONVEX, CONCAVE } meeting_kind;
+
 static const laves__tape *tape_of(const laves__crease_search *s, int32_t branch) { return &s->all->branches.tape[branch]; }
 
-laves__meeting laves__branches_meet(laves__crease_search *s, laves__vec3 p, const int32_t branch[2], laves__vec3 normal[2],
-                                    double *turn) {
+static meeting_kind branches_meet(laves__crease_search *s, laves__vec3 p, const int32_t branch[2], laves__vec3 normal[2],
+                                  double *turn) {
   double slope[2];
   s->work += 5 * (double)s->all->whole.tape.count;
   for (int i = 0; i < 2; i++) {
@@ -49,7 +68,7 @@ laves__meeting laves__branches_meet(laves__crease_search *s, laves__vec3 p, cons
   }
   const double cosine = v3_dot(normal[0], normal[1]), sine = v3_norm(v3_cross(normal[0], normal[1]));
   *turn = degrees * laves__angle(sine, cosine);
-  if (!(slope[0] > 0 && slope[1] > 0 && sine > 1e-6)) return LAVES__NOT_MET;
+  if (!(slope[0] > 0 && slope[1] > 0 && sine > least_sine)) return NOT_MET;
   laves__vec3 probes[5]; /* on face 0 before and beyond the crease, on face 1 before and beyond; on it */
   double phi[5], own[4];
   for (int i = 0; i < 2; i++) {
@@ -61,12 +80,12 @@ laves__meeting laves__branches_meet(laves__crease_search *s, laves__vec3 p, cons
   probes[4] = p;
   laves__tape_evaluate(s->all->solid.tape, 5, probes, phi);
   const double equal = equal_part * s->probe * sine * min_of(slope[0], slope[1]);
-  if (!(fabs(phi[4]) <= equal)) return LAVES__NOT_MET;
+  if (!(fabs(phi[4]) <= equal)) return NOT_MET;
   const bool before = fabs(phi[0] - own[0]) <= equal && fabs(phi[2] - own[2]) <= equal;
   const bool beyond = fabs(phi[1] - own[1]) <= equal && fabs(phi[3] - own[3]) <= equal;
-  if (before == beyond) return LAVES__NOT_MET;
-  if (before) return phi[1] > own[1] && phi[3] > own[3] ? LAVES__CONVEX : LAVES__NOT_MET;
-  return phi[0] < own[0] && phi[2] < own[2] ? LAVES__CONCAVE : LAVES__NOT_MET;
+  if (before == beyond) return NOT_MET;
+  if (before) return phi[1] > own[1] && phi[3] > own[3] ? CONVEX : NOT_MET;
+  return phi[0] < own[0] && phi[2] < own[2] ? CONCAVE : NOT_MET;
 }
 
 /* ---- points of a crease ---- */
@@ -75,18 +94,18 @@ typedef struct spot {
   laves__vec3 p, tangent; /* the first branch is on the left along the tangent */
   laves__vec3 normal[2];
   int32_t branch[2];
-  laves__meeting meeting;
+  meeting_kind meeting;
   double turn; /* between the normals, degrees */
   uint32_t point;
 } spot;
 
-static double inner_angle(const spot *a) { return a->meeting == LAVES__CONVEX ? 180 - a->turn : 180 + a->turn; }
+static double inner_angle(const spot *a) { return a->meeting == CONVEX ? 180 - a->turn : 180 + a->turn; }
 
 /* Seen from outside, the face of n is left of n x m where that face ends at a convex edge, right of it at a notch. */
 static void look_around(laves__crease_search *s, spot *a) {
-  a->meeting = laves__branches_meet(s, a->p, a->branch, a->normal, &a->turn);
+  a->meeting = branches_meet(s, a->p, a->branch, a->normal, &a->turn);
   const laves__vec3 along = v3_unit(v3_cross(a->normal[0], a->normal[1]));
-  a->tangent = a->meeting == LAVES__CONCAVE ? v3_scale(along, -1) : along;
+  a->tangent = a->meeting == CONCAVE ? v3_scale(along, -1) : along;
 }
 
 static bool put_on_crease(const laves__crease_search *s, const int32_t branch[2], double reach, laves__vec3 *p) {
@@ -104,7 +123,7 @@ static outcome advance(laves__crease_search *s, const spot *from, double way, do
   if (!put_on_crease(s, from->branch, 0.5 * h, &to->p)) return TOO_LONG;
   if (v3_dot(v3_sub(to->p, from->p), ahead_of) < 0.5 * h) return TOO_LONG;
   look_around(s, to);
-  if (to->meeting == LAVES__NOT_MET && from->meeting == LAVES__CONCAVE) to->tangent = v3_scale(to->tangent, -1);
+  if (to->meeting == NOT_MET && from->meeting == CONCAVE) to->tangent = v3_scale(to->tangent, -1);
   if (v3_dot(to->tangent, from->tangent) < least_cosine) return to->meeting == from->meeting ? TOO_LONG : ENDED;
   if (h * v3_distance(to->tangent, from->tangent) > 8 * s->sagitta) return TOO_LONG; /* of an arc: h turn / 8 */
   if (to->meeting != from->meeting) return ENDED;
@@ -140,6 +159,12 @@ static bool add_point(laves__crease_search *s, spot *a) {
   return false;
 }
 
+double laves__piece_distance2(const laves__crease_piece *c, laves__vec3 p) {
+  const laves__vec3 along = v3_sub(c->ends[1], c->ends[0]);
+  const double length2 = v3_norm2(along), t = length2 > 0 ? v3_dot(v3_sub(p, c->ends[0]), along) / length2 : 0;
+  return v3_norm2(v3_sub(p, v3_mad(c->ends[0], along, min_of(max_of(t, 0), 1))));
+}
+
 typedef struct piece_question {
   const laves__implicit_features *all;
   laves__vec3 p;
@@ -148,16 +173,10 @@ typedef struct piece_question {
   uint32_t best;
 } piece_question;
 
-static double distance2_to_piece(const laves__crease_piece *c, laves__vec3 p) {
-  const laves__vec3 along = v3_sub(c->ends[1], c->ends[0]);
-  const double length2 = v3_norm2(along), t = length2 > 0 ? v3_dot(v3_sub(p, c->ends[0]), along) / length2 : 0;
-  return v3_norm2(v3_sub(p, v3_mad(c->ends[0], along, min_of(max_of(t, 0), 1))));
-}
-
 static void measure_piece(void *user, uint32_t index) {
   piece_question *q = user;
   const laves__crease_piece *c = &q->all->piece[index];
-  const double distance2 = distance2_to_piece(c, q->p);
+  const double distance2 = laves__piece_distance2(c, q->p);
   if (distance2 > q->distance2 || (distance2 == q->distance2 && index >= q->best)) return;
   const int32_t l = laves__branch_root(q->all, c->branch[0]), r = laves__branch_root(q->all, c->branch[1]);
   if (!(l == q->a && r == q->b) && !(l == q->b && r == q->a)) return;
@@ -165,7 +184,8 @@ static void measure_piece(void *user, uint32_t index) {
   q->best = index;
 }
 
-uint32_t laves__piece_near(const laves__implicit_features *all, laves__vec3 p, double reach, int32_t a, int32_t b) {
+/* The piece nearest to p, within reach, of two patches (left and right in any order), or LAVES__NONE. */
+static uint32_t piece_near(const laves__implicit_features *all, laves__vec3 p, double reach, int32_t a, int32_t b) {
   piece_question q = {all, p, laves__branch_root(all, a), laves__branch_root(all, b), reach * reach, LAVES__NONE};
   laves__point_grid_near(&all->piece_grid, p, measure_piece, &q);
   return q.best;
@@ -187,7 +207,7 @@ static void measure_corner(void *user, uint32_t index) {
 }
 
 bool laves__corner_add(laves__crease_search *s, laves__vec3 p, uint32_t *point) {
-  corner_question q = {s, p, 8 * s->probe, LAVES__NONE};
+  corner_question q = {s, p, corner_merge * s->probe, LAVES__NONE};
   laves__point_grid_near(&s->corner_grid, p, measure_corner, &q);
   if (q.best != LAVES__NONE) {
     *point = s->corner_point[q.best];
@@ -234,7 +254,7 @@ static rivals find_rivals(laves__crease_search *s, laves__vec3 c) {
     const laves__vec3 from = v3_mad(c, v3_unit(direction), rival_radius * s->probe);
     if (!laves__tape_foot(s->all->solid.tape, s->all->solid.diagonal, from, 2 * rival_radius * s->probe, &foot, &there)) continue;
     laves__vec3 normal = v3_unit(there.gradient);
-    const int32_t b = laves__branch_of_foot(s, &s->all->whole, foot, &normal, 0.25 * s->probe);
+    const int32_t b = laves__branch_of_foot(s, &s->all->whole, foot, &normal, rival_depth * s->probe);
     if (b != LAVES__NO_BRANCH) add_rival(&r, b);
   }
   laves__point_grid_near(&s->all->site_grid, c, consider_site, &r);
@@ -255,7 +275,7 @@ static bool find_corner(const laves__crease_search *s, const spot *last, const r
     if (!laves__tapes_meet(f, 3, diagonal, reach, &p)) continue;
     laves__tape_evaluate(s->all->solid.tape, 1, &p, &phi);
     const double distance = v3_distance(p, last->p);
-    if (fabs(phi) > 1e-9 * diagonal || distance >= least) continue;
+    if (fabs(phi) > zero_part * diagonal || distance >= least) continue;
     least = distance;
     *corner = p;
   }
@@ -301,7 +321,7 @@ static bool find_continuation(laves__crease_search *s, const spot *last, double 
 static spot find_end(laves__crease_search *s, const spot *from, double way, double h) {
   spot last = *from, trial;
   double sure = 0;
-  while (h - sure > 0.5 * s->probe) {
+  while (h - sure > end_width * s->probe) {
     const double middle = 0.5 * (sure + h);
     if (advance(s, from, way, middle, &trial) == WENT) {
       sure = middle;
@@ -360,8 +380,8 @@ static bool close_ring(laves__crease_search *s, const spot *here, double way, do
   const laves__vec3 rest = v3_sub(start->p, here->p);
   const double length = v3_norm(rest);
   spot there;
-  if (length > 1.5 * h || v3_dot(rest, here->tangent) * way < 0.5 * length) return false;
-  if (advance(s, here, way, length, &there) != WENT || v3_distance(there.p, start->p) > 0.05 * length) return false;
+  if (length > closing_reach * h || v3_dot(rest, here->tangent) * way < 0.5 * length) return false;
+  if (advance(s, here, way, length, &there) != WENT || v3_distance(there.p, start->p) > closing_miss * length) return false;
   spot end = *start;
   end.branch[0] = here->branch[0];
   end.branch[1] = here->branch[1];
@@ -394,7 +414,7 @@ static bool follow(laves__crease_search *s, const spot *start, double way) {
   while (laves__search_goes_on(s) && s->all->piece_grid.count < PIECE_LIMIT) {
     if (steps > 2 && close_ring(s, &here, way, h, start)) return true;
     outcome o = advance(s, &here, way, h, &there);
-    if ((o == TOO_LONG && h > 4 * s->probe) || (o == FADED && h > s->step / 16)) {
+    if ((o == TOO_LONG && h > least_step * s->probe) || (o == FADED && h > fade_step * s->step)) {
       h *= 0.5;
       continue;
     }
@@ -437,13 +457,13 @@ static bool is_twin(const laves__crease_search *s, const spot *a, int side, int3
   if (branch == a->branch[side]) return true;
   const laves__dual at = laves__tape_gradient(tape_of(s, branch), a->p);
   const double slope = v3_norm(at.gradient);
-  return fabs(at.value) <= equal_part * s->probe * slope && v3_dot(at.gradient, a->normal[side]) > 0.9999 * slope;
+  return fabs(at.value) <= equal_part * s->probe * slope && v3_dot(at.gradient, a->normal[side]) > twin_cosine * slope;
 }
 
 static void look_for_twins(void *user, uint32_t index) {
   twin_question *q = user;
   const laves__crease_piece *c = &q->s->all->piece[index];
-  if (q->found || distance2_to_piece(c, q->a->p) > q->reach * q->reach) return;
+  if (q->found || laves__piece_distance2(c, q->a->p) > q->reach * q->reach) return;
   for (int k = 0; k < 2 && !q->found; k++) {
     q->found = is_twin(q->s, q->a, 0, c->branch[k]) && is_twin(q->s, q->a, 1, c->branch[1 - k]);
     q->twin[0] = c->branch[k];
@@ -463,18 +483,18 @@ static void trace(laves__crease_search *s, laves__vec3 start, int32_t a, int32_t
   spot first = {.p = start, .branch = {a, b}};
   if (!put_on_crease(s, first.branch, reach, &first.p)) return;
   look_around(s, &first);
-  if (first.meeting == LAVES__NOT_MET) return;
+  if (first.meeting == NOT_MET) return;
   if (first.turn < s->wish->angle) {
     note_weak(s, &first);
     return;
   }
-  if (laves__piece_near(s->all, first.p, near, a, b) != LAVES__NONE || has_twin(s, &first, near)) return;
+  if (piece_near(s->all, first.p, near, a, b) != LAVES__NONE || has_twin(s, &first, near)) return;
   if (!leads_on(s, &first) || !add_point(s, &first)) return;
   if (!follow(s, &first, 1)) follow(s, &first, -1);
 }
 
 void laves__crease_trace(laves__crease_search *s, laves__vec3 start, int32_t a, int32_t b) {
-  trace(s, start, a, b, s->all->size, 4 * s->sagitta);
+  trace(s, start, a, b, s->all->size, found_before * s->sagitta);
 }
 
 /* Ends that came when the cells around were still to be searched. */
@@ -483,7 +503,7 @@ static void tie_loose_ends(laves__crease_search *s) {
     const laves__loose_end end = s->loose[i];
     spot last = {.p = end.p, .branch = {end.branch[0], end.branch[1]}, .point = end.point};
     look_around(s, &last);
-    if (last.meeting == LAVES__NOT_MET) continue;
+    if (last.meeting == NOT_MET) continue;
     const rivals r = find_rivals(s, v3_mad(last.p, last.tangent, 2 * end.way * s->probe));
     laves__vec3 corner;
     spot there = last;
@@ -513,7 +533,7 @@ void laves__corners_complete(laves__crease_search *s) {
 void laves__weak_borders_join(laves__crease_search *s) {
   for (size_t i = 0; i < s->weak_count; i++) {
     const laves__weak_border *w = &s->weak[i];
-    if (laves__piece_near(s->all, w->p, 4 * s->sagitta, w->branch[0], w->branch[1]) == LAVES__NONE)
+    if (piece_near(s->all, w->p, found_before * s->sagitta, w->branch[0], w->branch[1]) == LAVES__NONE)
       laves__branches_join(s->all, w->branch[0], w->branch[1]);
   }
 }
