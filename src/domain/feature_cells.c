@@ -24,8 +24,8 @@ enum {
 static const double margin = 0.25, near_enough = 1e-9;
 /* Walks go by half sizes or this part of the diagonal, whichever is less. */
 static const double walk_step = 0.005;
-/* From how many patches is walked, how many steps, in how many directions; after how many steps the code is cut anew. */
-enum { WALK_LIMIT = 4096, WALK_STEPS = 32, WALK_DIRECTIONS = 27, WALK_CUT = 4 };
+/* From how many patches is walked, how many steps, in how many directions. */
+enum { WALK_LIMIT = 4096, WALK_STEPS = 32, WALK_DIRECTIONS = 27 };
 /* The eight points' place between the middle (0) and the cell's corners (1). */
 static const double spread = 0.75;
 /* How far beside a foot that tells nothing others are looked for, in widths of the cell and its surroundings. */
@@ -196,14 +196,15 @@ static laves__tape operand_tape(const laves__tape *tape, size_t k, int operand, 
 }
 
 /* Whether the surface around p turns by more than the wished angle. */
-static bool is_pointed(const laves__crease_search *s, laves__vec3 p) {
+static bool is_pointed(laves__crease_search *s, laves__vec3 p) {
   laves__vec3 normal[TIP_DIRECTIONS + 1];
+  const laves__code *code = laves__local_code(s, p);
   int count = 0;
   for (int k = 0; k <= TIP_DIRECTIONS; k++) {
     const laves__vec3 direction = v3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
     laves__dual there;
     laves__vec3 foot;
-    if (!laves__tape_foot(s->all->solid.tape, s->all->solid.diagonal, v3_mad(p, v3_unit(direction), tip_radius * s->probe),
+    if (!laves__tape_foot(&code->tape, s->all->solid.diagonal, v3_mad(p, v3_unit(direction), tip_radius * s->probe),
                           2 * tip_radius * s->probe, &foot, &there))
       continue;
     normal[count] = v3_unit(there.gradient);
@@ -270,7 +271,7 @@ static void find_tips(laves__crease_search *s, laves__box3 around, int32_t branc
     if (!(p.x >= around.lower.x && p.y >= around.lower.y && p.z >= around.lower.z && p.x <= around.upper.x &&
           p.y <= around.upper.y && p.z <= around.upper.z))
       continue;
-    laves__tape_evaluate(s->all->solid.tape, 1, &p, &phi);
+    laves__tape_evaluate(&laves__local_code(s, p)->tape, 1, &p, &phi);
     if (fabs(phi) > zero_part * s->all->solid.diagonal || !is_pointed(s, p)) continue;
     if (!laves__corner_add(s, p, &point) || is_fixed(s->lines, point)) continue;
     if (!laves__feature_lines_fix(s->lines, point, branch)) s->out_of_memory = true;
@@ -432,23 +433,14 @@ static void join_at_once(laves__crease_search *s, int32_t branch, const labelled
 
 /* From a point of a patch straight ahead over the surface until a crease comes.
  * So slivers between cells come to their patches, and creases are met that all cells missed. */
-static void walk_away(laves__crease_search *s, laves__code *code, int32_t branch, laves__vec3 direction) {
-  const double step = min_of(0.5 * s->all->size, walk_step * s->all->solid.diagonal), half = (WALK_CUT + 2) * step;
-  const laves__vec3 reach = v3(half, half, half);
-  const laves__vec3 from = s->sample[branch];
-  labelled_foot here = {.p = from}, next;
+static void walk_away(laves__crease_search *s, int32_t branch, laves__vec3 direction) {
+  const double step = min_of(0.5 * s->all->size, walk_step * s->all->solid.diagonal);
+  const laves__code *code = laves__local_code(s, s->sample[branch]);
+  labelled_foot here, next;
+  if (!find_foot(s, code, s->sample[branch], step, &here) || !label_foot(s, code, &here)) return;
+  join_at_once(s, branch, &here);
   for (int i = 0; i < WALK_STEPS && laves__search_goes_on(s); i++) {
-    if (i % WALK_CUT == 0) {
-      const laves__box3 around = {v3_sub(here.p, reach), v3_add(here.p, reach)};
-      if (!laves__code_cut(s->context, &s->all->whole, around, &s->room, code)) {
-        s->out_of_memory = true;
-        return;
-      }
-    }
-    if (i == 0) {
-      if (!find_foot(s, code, from, step, &here) || !label_foot(s, code, &here)) return;
-      join_at_once(s, branch, &here);
-    }
+    code = laves__local_code(s, here.p);
     const laves__vec3 along = v3_unit(v3_mad(direction, here.normal, -v3_dot(direction, here.normal)));
     if (!find_foot(s, code, v3_mad(here.p, along, step), step, &next) || !label_foot(s, code, &next)) return;
     if (laves__branch_root(s->all, here.branch) != laves__branch_root(s->all, next.branch)) {
@@ -462,17 +454,15 @@ static void walk_away(laves__crease_search *s, laves__code *code, int32_t branch
 
 void laves__search_walks(laves__crease_search *s) {
   const laves__implicit_features *all = s->all;
-  laves__code code = {0};
   int walks = 0;
   for (size_t b = 0; b < all->branches.count && walks < WALK_LIMIT; b++) {
     if (!all->seen[b] || laves__branch_root(all, (int32_t)b) != (int32_t)b) continue;
     for (int k = 0; k < WALK_DIRECTIONS && laves__branch_root(all, (int32_t)b) == (int32_t)b; k++) {
       if (k == WALK_DIRECTIONS / 2) continue; /* all around a cube, but not from its middle to its middle */
-      walk_away(s, &code, (int32_t)b, v3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
+      walk_away(s, (int32_t)b, v3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
       walks++;
     }
   }
-  laves__code_free(s->context, &code);
 }
 
 /* How many of the smallest cells are searched at most; then cells twice as wide are taken. */

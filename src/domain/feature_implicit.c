@@ -10,6 +10,8 @@
 static const double probe_part = 1e-6, sagitta_part = 5e-5;
 /* Cells in which corners are looked up, in probes: wider than those that are merged. */
 static const double corner_cell = 64;
+/* Half the widths of the boxes of local codes, in sizes. */
+static const double near_reach = 1.5, wide_reach = 12;
 /* Sizes above this part of the diagonal are too coarse to find a solid's own creases, those below too fine to search. */
 static const double largest_size = 1.0 / 24, least_size = 1.0 / 3000;
 /* Parts of the size: the longest step along a crease, and by how much a chord may miss it where that is less than the above. */
@@ -27,6 +29,34 @@ bool laves__search_goes_on(laves__crease_search *s) {
   return !s->cancelled;
 }
 
+static bool contains(laves__box3 box, laves__vec3 p, double by) {
+  for (int i = 0; i < 3; i++)
+    if (!((&p.x)[i] - by >= (&box.lower.x)[i] && (&p.x)[i] + by <= (&box.upper.x)[i])) return false;
+  return true;
+}
+
+static bool cut_around(laves__crease_search *s, const laves__code *code, laves__vec3 p, double by, laves__code *cut,
+                       laves__box3 *box) {
+  const laves__vec3 reach = v3(by, by, by);
+  *box = (laves__box3){v3_sub(p, reach), v3_add(p, reach)};
+  s->work += 2 * (double)code->tape.count;
+  if (laves__code_cut(s->context, code, *box, &s->room, cut)) return true;
+  *box = box3_empty();
+  s->out_of_memory = true;
+  return false;
+}
+
+/* In two steps, as the whole tape may be long: the wide one serves many places. */
+const laves__code *laves__local_code(laves__crease_search *s, laves__vec3 p) {
+  const double size = s->all->size;
+  if (contains(s->near_box, p, size)) return &s->near;
+  if (!contains(s->wide_box, p, near_reach * size) &&
+      !cut_around(s, &s->all->whole, p, wide_reach * size, &s->wide, &s->wide_box))
+    return &s->all->whole;
+  if (!cut_around(s, &s->wide, p, near_reach * size, &s->near, &s->near_box)) return &s->all->whole;
+  return &s->near;
+}
+
 static laves_result outcome_of(const laves__crease_search *s, laves_error *error) {
   if (s->cancelled) return laves__fail_cancelled(error);
   return s->out_of_memory ? laves__fail_memory(s->context, error) : LAVES_OK;
@@ -42,6 +72,8 @@ static void search(laves__crease_search *s) {
   laves__free(s->context, s->loose, s->loose_capacity, sizeof *s->loose);
   laves__free(s->context, s->sample, s->sample_capacity, sizeof *s->sample);
   laves__branch_room_free(s->context, &s->room);
+  laves__code_free(s->context, &s->near);
+  laves__code_free(s->context, &s->wide);
 }
 
 /* ---- patches ---- */
@@ -309,6 +341,8 @@ laves_result laves__features_of_implicit(const laves__implicit_solid *solid, con
                             .wish = wish,
                             .lines = lines,
                             .probe = probe_part * solid->diagonal,
+                            .near_box = box3_empty(),
+                            .wide_box = box3_empty(),
                             .step = step_part * all->size,
                             .sagitta = min_of(sagitta_part * solid->diagonal, sagitta_of_size * all->size)};
   laves__point_grid_init(&s.corner_grid, context, corner_cell * s.probe);

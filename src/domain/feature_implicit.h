@@ -100,6 +100,8 @@ typedef struct laves__crease_search {
   size_t sample_capacity;
   laves__code *level; /* codes of the cells on the way down */
   laves__branch_room room;
+  laves__code near, wide; /* valid in the boxes, around where the search goes on just now */
+  laves__box3 near_box, wide_box;
   size_t cell_count;
   unsigned asked;
   double fraction; /* of the search that is done, roughly */
@@ -114,6 +116,9 @@ typedef struct laves__crease_search {
 
 /* Whether the search goes on; asks the caller now and then. */
 bool laves__search_goes_on(laves__crease_search *s);
+
+/* A code that is valid for a size around p, until it is asked for another place. */
+const laves__code *laves__local_code(laves__crease_search *s, laves__vec3 p);
 
 /* The root of a branch's tree in the forest; two branches become one patch. */
 int32_t laves__branch_root(const laves__implicit_features *all, int32_t branch);

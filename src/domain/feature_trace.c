@@ -60,7 +60,8 @@ static const laves__tape *tape_of(const laves__crease_search *s, int32_t branch)
 static meeting_kind branches_meet(laves__crease_search *s, laves__vec3 p, const int32_t branch[2], laves__vec3 normal[2],
                                   double *turn) {
   double slope[2];
-  s->work += 5 * (double)s->all->whole.tape.count;
+  const laves__code *code = laves__local_code(s, p);
+  s->work += 5 * (double)code->tape.count;
   for (int i = 0; i < 2; i++) {
     const laves__dual at = laves__tape_gradient(tape_of(s, branch[i]), p);
     slope[i] = v3_norm(at.gradient);
@@ -78,7 +79,7 @@ static meeting_kind branches_meet(laves__crease_search *s, laves__vec3 p, const 
     laves__tape_evaluate(tape_of(s, branch[i]), 2, probes + 2 * i, own + 2 * i);
   }
   probes[4] = p;
-  laves__tape_evaluate(s->all->solid.tape, 5, probes, phi);
+  laves__tape_evaluate(&code->tape, 5, probes, phi);
   const double equal = equal_part * s->probe * sine * min_of(slope[0], slope[1]);
   if (!(fabs(phi[4]) <= equal)) return NOT_MET;
   const bool before = fabs(phi[0] - own[0]) <= equal && fabs(phi[2] - own[2]) <= equal;
@@ -247,14 +248,15 @@ static void consider_site(void *user, uint32_t index) {
  * cells know, as from outside an edge all feet may be on the edge. */
 static rivals find_rivals(laves__crease_search *s, laves__vec3 c) {
   rivals r = {.s = s, .c = c};
+  const laves__code *code = laves__local_code(s, c);
   for (int k = 0; k < 27; k++) {
     const laves__vec3 direction = v3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
     laves__vec3 foot;
     laves__dual there;
     const laves__vec3 from = v3_mad(c, v3_unit(direction), rival_radius * s->probe);
-    if (!laves__tape_foot(s->all->solid.tape, s->all->solid.diagonal, from, 2 * rival_radius * s->probe, &foot, &there)) continue;
+    if (!laves__tape_foot(&code->tape, s->all->solid.diagonal, from, 2 * rival_radius * s->probe, &foot, &there)) continue;
     laves__vec3 normal = v3_unit(there.gradient);
-    const int32_t b = laves__branch_of_foot(s, &s->all->whole, foot, &normal, rival_depth * s->probe);
+    const int32_t b = laves__branch_of_foot(s, code, foot, &normal, rival_depth * s->probe);
     if (b != LAVES__NO_BRANCH) add_rival(&r, b);
   }
   laves__point_grid_near(&s->all->site_grid, c, consider_site, &r);
@@ -262,7 +264,7 @@ static rivals find_rivals(laves__crease_search *s, laves__vec3 c) {
 }
 
 /* The point near the end where a third function vanishes as well. */
-static bool find_corner(const laves__crease_search *s, const spot *last, const rivals *r, laves__vec3 *corner) {
+static bool find_corner(laves__crease_search *s, const spot *last, const rivals *r, laves__vec3 *corner) {
   const double reach = corner_reach * s->probe, diagonal = s->all->solid.diagonal;
   double least = INFINITY;
   for (int i = 0; i < r->count; i++) {
@@ -273,7 +275,7 @@ static bool find_corner(const laves__crease_search *s, const spot *last, const r
     laves__vec3 p = last->p;
     double phi;
     if (!laves__tapes_meet(f, 3, diagonal, reach, &p)) continue;
-    laves__tape_evaluate(s->all->solid.tape, 1, &p, &phi);
+    laves__tape_evaluate(&laves__local_code(s, p)->tape, 1, &p, &phi);
     const double distance = v3_distance(p, last->p);
     if (fabs(phi) > zero_part * diagonal || distance >= least) continue;
     least = distance;
