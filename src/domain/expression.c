@@ -396,7 +396,7 @@ static laves__node frame_coordinate(laves__expression *e, const frame *f, int ax
   return laves__node_make(e, LAVES__OP_ADD, sum, laves__node_constant(e, shift[axis]), 0);
 }
 
-static laves__node lowered_leaf(laves__expression *e, double index, const laves__node coordinate[3]) {
+laves__node laves__node_leaf_at(laves__expression *e, uint32_t index, const laves__node coordinate[3]) {
   laves__node_data n = {.value = index, .op = LAVES__OP_LEAF};
   for (int i = 0; i < 3; i++) n.operand[i] = as_variable(e, coordinate[i]);
   return has_failed(e) ? LAVES__NO_NODE : intern(e, n);
@@ -444,7 +444,7 @@ static bool lower_step(lowering *w) {
     if (n.op >= LAVES__OP_X && n.op <= LAVES__OP_Z)
       lowered = frame_coordinate(e, &w->frames[v.frame], (int)(n.op - LAVES__OP_X));
     else if (n.op == LAVES__OP_LEAF)
-      lowered = lowered_leaf(e, n.value, operand);
+      lowered = laves__node_leaf_at(e, (uint32_t)n.value, operand);
     else if (n.op == LAVES__OP_CONSTANT)
       lowered = v.node;
     else if (n.op == LAVES__OP_TAG)

@@ -101,6 +101,8 @@ laves__node laves__node_constant(laves__expression *e, double value);
 laves__node laves__node_make(laves__expression *e, laves__op op, laves__node a, laves__node b, laves__node c);
 /* Value of oracle number `index` (kept by the caller) at coordinates (x, y, z). */
 laves__node laves__node_leaf(laves__expression *e, uint32_t index);
+/* The same at other coordinates, which must hold no AFFINE and WARP when the leaf is put below none. */
+laves__node laves__node_leaf_at(laves__expression *e, uint32_t index, const laves__node coordinate[3]);
 /* body(A p): coordinates are mapped by A before body sees them. To move a solid by T, map by the inverse of T. */
 laves__node laves__node_affine(laves__expression *e, laves__node body, const laves__affine *map);
 /* a, named. What has a name keeps it, and constants have no surface: these come back as they are. */

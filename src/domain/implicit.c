@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "domain/elementary.h"
+#include "domain/feature_implicit.h"
 #include "domain/implicit_bounds.h"
 #include "domain/script.h"
 #include "domain/tape.h"
@@ -224,6 +225,15 @@ static size_t sample(const void *self, double spacing, laves__vec3 *points, size
   return s.count;
 }
 
+/* ---- features ---- */
+
+static laves_result find_features(const laves__feature_wish *wish, laves__features *features, laves__feature_lines *lines,
+                                  laves_error *error) {
+  const implicit *s = features->oracle->self;
+  const laves__implicit_solid solid = {.tape = &s->tape, .bounds = s->bounds, .diagonal = s->diagonal};
+  return laves__features_of_implicit(&solid, wish, features, lines, error);
+}
+
 /* ---- making ---- */
 
 static laves_result build_tape(implicit *s, const char *name, laves__vec3 origin, laves_error *error) {
@@ -302,6 +312,7 @@ static void fill_domain(laves_domain *domain, implicit *s, laves__box3 box, lave
                                    .project_many = project_many,
                                    .side = side,
                                    .sample = sample,
+                                   .find_features = find_features,
                                    .free = free_implicit};
   snprintf(domain->format, sizeof domain->format, "%s", is_expression ? "Lua expression" : "Lua script");
   domain->info =

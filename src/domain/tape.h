@@ -65,6 +65,9 @@ void laves__tape_evaluate(const laves__tape *tape, size_t count, const laves__ve
  * *may_be_nan: some operation may have no value somewhere in the box; then only undecided is safe. */
 laves__interval laves__tape_interval(const laves__tape *tape, laves__box3 box, bool *may_be_nan);
 
+/* The same, and each[i] bounds what instruction i yields; NULL: not wanted. */
+laves__interval laves__tape_intervals(const laves__tape *tape, laves__box3 box, bool *may_be_nan, laves__interval *each);
+
 /* Value and gradient; where the function has a kink, those of one of its sides. */
 laves__dual laves__tape_gradient(const laves__tape *tape, laves__vec3 point);
 /* The same at many points, with the same bits, several times as fast. */

@@ -184,7 +184,9 @@ static laves__interval apply(const laves__tape *tape, const laves__instruction *
 
 static bool is_finite(laves__interval a) { return isfinite(a.lower) && isfinite(a.upper); }
 
-static laves__interval run(const laves__tape *tape, laves__box3 box, bool *may_be_nan, laves__interval *registers) {
+/* each: [tape->count] receives what every instruction yields; NULL: not wanted. */
+static laves__interval run(const laves__tape *tape, laves__box3 box, bool *may_be_nan, laves__interval *registers,
+                           laves__interval *each) {
   registers[0] = (laves__interval){box.lower.x, box.upper.x};
   registers[1] = (laves__interval){box.lower.y, box.upper.y};
   registers[2] = (laves__interval){box.lower.z, box.upper.z};
@@ -203,20 +205,26 @@ static laves__interval run(const laves__tape *tape, laves__box3 box, bool *may_b
     /* An overflow may become NaN further on. */
     if (finite && !is_finite(result)) *may_be_nan = true;
     registers[p->out] = result;
+    if (each) *each++ = result;
   }
   return result;
 }
 
-static laves__interval run_large(const laves__tape *tape, laves__box3 box, bool *may_be_nan) {
+static laves__interval run_large(const laves__tape *tape, laves__box3 box, bool *may_be_nan, laves__interval *each) {
   laves__interval registers[LAVES__REGISTER_LIMIT];
-  return run(tape, box, may_be_nan, registers);
+  return run(tape, box, may_be_nan, registers, each);
 }
 
-static laves__interval run_small(const laves__tape *tape, laves__box3 box, bool *may_be_nan) {
+static laves__interval run_small(const laves__tape *tape, laves__box3 box, bool *may_be_nan, laves__interval *each) {
   laves__interval registers[LAVES__REGISTERS_FEW];
-  return run(tape, box, may_be_nan, registers);
+  return run(tape, box, may_be_nan, registers, each);
+}
+
+laves__interval laves__tape_intervals(const laves__tape *tape, laves__box3 box, bool *may_be_nan, laves__interval *each) {
+  return tape->register_count <= LAVES__REGISTERS_FEW ? run_small(tape, box, may_be_nan, each)
+                                                      : run_large(tape, box, may_be_nan, each);
 }
 
 laves__interval laves__tape_interval(const laves__tape *tape, laves__box3 box, bool *may_be_nan) {
-  return tape->register_count <= LAVES__REGISTERS_FEW ? run_small(tape, box, may_be_nan) : run_large(tape, box, may_be_nan);
+  return laves__tape_intervals(tape, box, may_be_nan, NULL);
 }
