@@ -162,12 +162,12 @@ static int side_of(const laves__frame *frame, int32_t crease, laves__vec3 p, dou
   return aside > 0 ? 1 : aside < 0 ? -1 : 0;
 }
 
-bool laves__way_crosses_seam(const laves__frame *frame, laves__vec3 a, laves__vec3 b, int32_t patch, laves__vec3 normal,
-                             int32_t *crease) {
+bool laves__way_crosses_seam(const laves__frame *frame, laves__vec3 a, laves__vec3 b, int32_t patch, laves__vec3 normal_a,
+                             laves__vec3 normal_b, int32_t *crease) {
   const laves__features *f = frame->features;
   const double reach = seam_reach * v3_distance(a, b);
   laves__vec3 foot, tangent;
   *crease = laves__seam_near(f, patch, laves__frame_to_local(frame, v3_lerp(a, b, 0.5)), reach * frame->size, &foot, &tangent);
   if (*crease == LAVES__NO_FEATURE) return false;
-  return side_of(frame, *crease, a, reach, normal) * side_of(frame, *crease, b, reach, normal) < 0;
+  return side_of(frame, *crease, a, reach, normal_a) * side_of(frame, *crease, b, reach, normal_b) < 0;
 }

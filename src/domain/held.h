@@ -34,9 +34,9 @@ bool laves__face_is_legal(const laves__features *features, const laves__hold hol
 bool laves__frame_project_held(const laves__frame *frame, laves__hold hold, laves__vec3 point, double reach, uint32_t *hint,
                                laves__vec3 *foot, laves__vec3 *direction);
 
-/* Whether the way from a to b, both on a patch, passes a crease that has this patch on both sides, or a line drawn on it.
- * *crease: which. */
-bool laves__way_crosses_seam(const laves__frame *frame, laves__vec3 a, laves__vec3 b, int32_t patch, laves__vec3 normal,
-                             int32_t *crease);
+/* Whether the way from a to b, both on a patch with the given normals there, passes a crease that has this patch on both sides,
+ * or a line drawn on it. *crease: which. */
+bool laves__way_crosses_seam(const laves__frame *frame, laves__vec3 a, laves__vec3 b, int32_t patch, laves__vec3 normal_a,
+                             laves__vec3 normal_b, int32_t *crease);
 
 #endif

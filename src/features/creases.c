@@ -87,7 +87,8 @@ static bool find_crease(const laves__keeping *k, int32_t vertex, int32_t other, 
   const int count = laves__hold_patches(f, there, room, &patches);
   hold->kind = LAVES__HOLD_CREASE;
   if (laves__holds_meet(f, here, there)) {
-    if (!laves__way_crosses_seam(k->frame, k->start[vertex], k->start[other], here.id, k->layer->normal[vertex], &crease))
+    if (!laves__way_crosses_seam(k->frame, k->start[vertex], k->start[other], here.id, k->layer->normal[vertex],
+                                 k->layer->normal[other], &crease))
       return false;
   } else {
     crease = laves__crease_between(f, here.id, patches, count, local, range, &foot);

@@ -19,7 +19,8 @@ bool laves__edge_is_legal(const laves__keeping *k, int32_t a, int32_t b) {
   int32_t crease;
   if (!laves__holds_meet(k->features, hold[a], hold[b])) return false;
   if (!k->features->has_seams || hold[a].kind != LAVES__HOLD_PATCH || hold[b].kind != LAVES__HOLD_PATCH) return true;
-  return !laves__way_crosses_seam(k->frame, k->start[a], k->start[b], hold[a].id, k->layer->normal[a], &crease);
+  return !laves__way_crosses_seam(k->frame, k->start[a], k->start[b], hold[a].id, k->layer->normal[a], k->layer->normal[b],
+                                  &crease);
 }
 
 void laves__face_holds(const laves__keeping *k, uint32_t face, laves__hold hold[3]) {
