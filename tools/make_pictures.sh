@@ -69,6 +69,20 @@ done
 # For docs/graded.md.
 sized ramp '--cut y --view -80,12 --size 480x320 --color dihedral' "$block" --size 0.4 --size-field '0.02 + 0.2*abs(x)'
 
+# For docs/features.md: parts of bench/shapes, with their creases in bold.
+part() {
+  picture=$1 script=$2 tets=$3
+  shift 3
+  [ -e "$meshes/$script.vtu" ] || "$program" mesh "bench/shapes/$script.lua" --tets "$tets" -q --certificate none -o "$meshes/$script.vtu"
+  "$program" view "$meshes/$script.vtu" --creases 2.6 --size 480x340 "$@" -o "docs/images/$picture.png"
+}
+part features-part gear 30k --view -60,40
+part features-part-cut gear 30k --view -60,40 --cut y
+part features-wedge wedge 20k --view 35,25
+part features-cylinders crossed_cylinders 20k --view -40,25
+part features-drilled drilled_cube 25k --view -50,30
+sized features-close '--view -45,35 --size 480x340 --creases 2.4' demo/bracket.obj --size 0.12 --feature-elements 2
+
 # The worst configurations, for docs/proof.md; the test that proves the bounds writes them.
 "${program%/*}/tests/proof" --draw "$meshes" > "$meshes/worst.txt"
 "$program" view "$meshes/smallest-angle.vtu" --color dihedral --view=-135,-10 --size 400x240 -o docs/images/proof-smallest.png
