@@ -20,6 +20,8 @@ static const double misfit_min = 0.3; /* root mean square deviation from a plane
 static const double reach = 1.2;      /* sizes from the surface within which an end must lie */
 static const double opposed = -0.2;   /* cosine between the outward directions at the ends */
 static const double depth_min = 0.15; /* sizes: how deep a sample must lie on the other side */
+static const double strictly_opposed = -0.7; /* the same between two sheets of a wall */
+static const double thin_depth = 0.1;        /* sizes */
 
 typedef struct thinning {
   const laves__frame *frame;
@@ -72,6 +74,29 @@ static void find_suspects(void *user, size_t begin, size_t end, int worker) {
   }
 }
 
+/* Outer sites beside a suspect inside are suspects as well: from beyond a wall that holds few sites, phi may look linear. */
+static bool is_beside_wall(const thinning *t, laves__site s) {
+  const laves__record *r = &t->lattice->record[s.cell];
+  if (r->sign[s.site] < 0 || !isfinite(r->phi[s.site])) return false;
+  if (t->frame->oracle->is_distance && !(r->phi[s.site] < reach * laves__site_scale(t->lattice, s))) return false;
+  const laves__ring ring = laves__ring_of(t->lattice, s);
+  for (int k = 0; k < ring.count; k++) {
+    const laves__site n = laves__ring_at(&ring, k);
+    if (n.cell >= 0 && t->suspects[n.cell] >> n.site & 1 && t->lattice->record[n.cell].sign[n.site] < 0) return true;
+  }
+  return false;
+}
+
+static void find_company(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const thinning *t = user;
+  for (size_t i = begin; i < end; i++) {
+    t->turns_on[i] = t->suspects[i];
+    for (int site = 0; site < LAVES__C15_SITES; site++)
+      if (is_beside_wall(t, (laves__site){(int32_t)i, (uint8_t)site})) t->turns_on[i] |= UINT32_C(1) << site;
+  }
+}
+
 /* The end of an edge: its foot when ON, else the site. Outwards is away from the solid, or from the foot of an inner site
  * towards it. False when the site has no foot near. */
 static bool end_of_edge(const thinning *t, laves__site s, laves__vec3 *end, laves__vec3 *outwards) {
@@ -84,19 +109,29 @@ static bool end_of_edge(const thinning *t, laves__site s, laves__vec3 *end, lave
   return true;
 }
 
+/* Where the segment from p on crosses into the half space behind a foot: the share of its length. */
+static double crossing(laves__vec3 from, laves__vec3 to, laves__vec3 at, laves__vec3 normal) {
+  const double a = v3_dot(v3_sub(from, at), normal), b = v3_dot(v3_sub(to, at), normal);
+  return a > b ? fmin(fmax(a / (a - b), 0), 1) : 0;
+}
+
 /* Whether an edge passes through a wall: see the drawing. */
 static bool passes_through(const thinning *t, laves__site s, laves__site other) {
   const laves__label a = laves__site_label(t->lattice, s), b = laves__site_label(t->lattice, other);
-  if (a == LAVES__LABEL_ON && b == LAVES__LABEL_ON) return false;
-  if (laves__site_sign(t->lattice, s) != laves__site_sign(t->lattice, other)) return false;
   if (a != LAVES__LABEL_OUT && b != LAVES__LABEL_OUT) return false;
   laves__vec3 from, to, n_from, n_to;
   if (!end_of_edge(t, s, &from, &n_from) || !end_of_edge(t, other, &to, &n_to)) return false;
-  if (v3_dot(n_from, n_to) > opposed) return false;
+  const double cosine = v3_dot(n_from, n_to);
+  if (cosine > opposed) return false;
   const double scale = 0.5 * (laves__site_scale(t->lattice, s) + laves__site_scale(t->lattice, other));
+  if (laves__site_sign(t->lattice, s) == laves__site_sign(t->lattice, other))
   for (int i = 0; i < SAMPLES; i++)
     if (laves__lies_inside(t->frame, v3_lerp(from, to, (i + 1.0) / (SAMPLES + 1)), depth_min * scale)) return true;
-  return false;
+  if (cosine > strictly_opposed) return false;
+  const laves__foot *f1 = laves__feet_get(t->feet, s.cell, s.site), *f2 = laves__feet_get(t->feet, other.cell, other.site);
+  const double begin = crossing(from, to, f1->position, n_from), end = 1 - crossing(to, from, f2->position, n_to);
+  if (!(begin < end)) return false;
+  return laves__lies_inside(t->frame, v3_lerp(from, to, 0.5 * (begin + end)), thin_depth * scale);
 }
 
 /* Reads labels only; what changes goes to turns_on of the site's own record. Both ends look at the edge, each for itself. */
@@ -141,6 +176,13 @@ laves_result laves__thin_cover(const laves__frame *frame, laves__lattice *lattic
     goto cleanup;
   }
   if (!laves__parallel_for(context, "snap", records, 16, find_suspects, &t)) result = laves__fail_cancelled(error);
+  if (result == LAVES_OK && !laves__parallel_for(context, "snap", records, 16, find_company, &t))
+    result = laves__fail_cancelled(error);
+  if (result == LAVES_OK) {
+    uint32_t *const swap = t.suspects;
+    t.suspects = t.turns_on;
+    t.turns_on = swap;
+  }
   if (result == LAVES_OK) result = laves__feet_find(frame, lattice, t.suspects, feet, error);
   for (int round = 0; result == LAVES_OK && round < ROUNDS; round++) {
     if (!laves__parallel_for(context, "snap", records, 16, look_at_edges, &t))
