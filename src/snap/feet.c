@@ -105,9 +105,13 @@ static bool lies_beyond(const laves__frame *frame, laves__vec3 point, double dep
   return !laves__frame_project(frame, point, depth, &hint, &foot, &normal) || v3_distance(point, foot) > depth;
 }
 
-bool laves__lies_inside(const laves__frame *frame, laves__vec3 point, double depth) { return lies_beyond(frame, point, depth, -1); }
+bool laves__lies_inside(const laves__frame *frame, laves__vec3 point, double depth) {
+  return lies_beyond(frame, point, depth, -1);
+}
 
-bool laves__lies_outside(const laves__frame *frame, laves__vec3 point, double depth) { return lies_beyond(frame, point, depth, 1); }
+bool laves__lies_outside(const laves__frame *frame, laves__vec3 point, double depth) {
+  return lies_beyond(frame, point, depth, 1);
+}
 
 typedef struct search {
   const laves__frame *frame;

@@ -16,10 +16,10 @@
 #include "snap/snap.h"
 
 enum { ROUNDS = 4, SAMPLES = 3 };
-static const double misfit_min = 0.3; /* root mean square deviation from a plane, sizes; a sphere of radius 3 has 0.1 */
-static const double reach = 1.2;      /* sizes from the surface within which an end must lie */
-static const double opposed = -0.2;   /* cosine between the outward directions at the ends */
-static const double depth_min = 0.15; /* sizes: how deep a sample must lie on the other side */
+static const double misfit_min = 0.3;        /* root mean square deviation from a plane, sizes; a sphere of radius 3 has 0.1 */
+static const double reach = 1.2;             /* sizes from the surface within which an end must lie */
+static const double opposed = -0.2;          /* cosine between the outward directions at the ends */
+static const double depth_min = 0.15;        /* sizes: how deep a sample must lie on the other side */
 static const double strictly_opposed = -0.7; /* the same between two sheets of a wall */
 static const double sheet_depth = 0.1;       /* sizes: what depth_min is between two sheets */
 
