@@ -6,6 +6,7 @@
  *
  *     cover.c   which vertices go ON: a small vertex cover of the crossing edges, nearest to the surface first
  *     thin.c    walls and gaps that an edge crosses twice: both its ends go ON
+ *     sides.c   sites in a wall with the outside on two sides: those on the one side go ON, too
  *     tips.c    tips and ridges beyond the last sites inside: outer sites that reach them go ON
  *     solid.c   tets with four corners ON: part of the mesh where they lie inside
  *     pinch.c   places where the result would touch itself are trimmed or parted, so that the boundary is a manifold
@@ -45,6 +46,11 @@ laves_result laves__cover(const laves__frame *frame, laves__lattice *lattice, la
 
 /* The second step: more labels ON, at thin walls (and forced) and narrow gaps. */
 laves_result laves__thin_cover(const laves__frame *frame, laves__lattice *lattice, laves__feet *feet, laves_error *error);
+
+/* Its last part: outer sites go ON (and forced) where a site has the outside on two sides. suspects: [record_count] bit for each
+ * site that may be one. */
+laves_result laves__side_cover(const laves__frame *frame, const uint32_t *suspects, laves__lattice *lattice, laves__feet *feet,
+                               laves_error *error);
 
 /* And at tips and ridges. All ON sites must have been asked for their feet. */
 laves_result laves__tip_cover(const laves__frame *frame, laves__lattice *lattice, laves__feet *feet, laves_error *error);

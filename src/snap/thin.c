@@ -206,6 +206,7 @@ laves_result laves__thin_cover(const laves__frame *frame, laves__lattice *lattic
     else if (!turn_on(&t))
       break;
   }
+  if (result == LAVES_OK) result = laves__side_cover(frame, t.suspects, lattice, feet, error);
 cleanup:
   laves__free(context, t.turns_on, records, sizeof *t.turns_on);
   laves__free(context, t.suspects, records, sizeof *t.suspects);
