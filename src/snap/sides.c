@@ -11,7 +11,7 @@
 #include "snap/star_graph.h"
 
 enum { ROUNDS = 3 };
-static const double reach = 1.2;     /* local sizes from a site to its foot */
+static const double reach = 1.2;      /* local sizes from a site to its foot */
 static const double depth_min = 0.03; /* local sizes: how deep the middle between two feet must lie */
 
 typedef struct sides {
@@ -125,7 +125,11 @@ laves_result laves__side_cover(const laves__frame *frame, const uint32_t *suspec
   laves_context *context = lattice->context;
   const size_t records = lattice->record_count;
   laves_result result = LAVES_OK;
-  sides w = {frame, lattice, feet, suspects, laves__alloc(context, records, sizeof *w.two_sided),
+  sides w = {frame,
+             lattice,
+             feet,
+             suspects,
+             laves__alloc(context, records, sizeof *w.two_sided),
              laves__alloc(context, records, sizeof *w.wanted)};
   if (!w.two_sided || !w.wanted) result = laves__fail_memory(context, error);
   for (int round = 0; result == LAVES_OK && round < ROUNDS; round++) {
