@@ -12,18 +12,23 @@
 #include "summary.h"
 #include "text.h"
 
-enum { THIN_CAPACITY = 8 };
+enum { THIN_CAPACITY = 64, SAID = 4 };
 
-/* Parts thinner than this many sizes come out rough, those thinner than one may vanish. */
-static const double well_resolved = 2;
+/* Walls and gaps thinner than this many sizes come out rough, those thinner than the second may be lost. */
+static const double well_resolved = 2, kept_down_to = 0.5;
+
+/* Thinnest first. */
+typedef struct thin_list {
+  laves_thin_place place[THIN_CAPACITY];
+  size_t count;
+} thin_list;
 
 typedef struct info_run {
   input in;
   laves_sizing *sizing; /* NULL: none */
   estimate cost;
   bool has_cost;
-  laves_thin_place thin[THIN_CAPACITY];
-  size_t thin_count;
+  thin_list walls, gaps;
   double thin_seconds;
 } info_run;
 
@@ -44,22 +49,32 @@ static void say_tags(const info_run *all) {
   text_say("%s", count > MOST ? ", ..." : "");
 }
 
-static void say_thin(const info_run *all) {
+/* Those listed that are below so many sizes. */
+static size_t count_below(const thin_list *list, double limit) {
+  size_t count = 0;
+  while (count < list->count && list->place[count].thickness < limit) ++count;
+  return count;
+}
+
+static void say_thin(const info_run *all, const thin_list *list, const char *name, const char *fate) {
   const double size = all->cost.size;
   text_buffer place;
-  size_t rough = 0;
-  while (rough < all->thin_count && all->thin[rough].thickness < well_resolved * size) ++rough;
-  if (all->thin_count == 0) return;
+  const size_t rough = count_below(list, well_resolved * size), lost = count_below(list, kept_down_to * size);
+  if (list->count == 0) return;
   if (rough == 0) {
-    text_say("  thinnest part %.4g (%.1f sizes) at %s", all->thin[0].thickness, all->thin[0].thickness / size,
-             text_place(&place, all->thin[0].place));
+    text_say("  thinnest %s %.4g (%.1f sizes) at %s", name, list->place[0].thickness, list->place[0].thickness / size,
+             text_place(&place, list->place[0].place));
     return;
   }
-  for (size_t i = 0; i < rough; ++i) {
-    const double share = all->thin[i].thickness / size;
-    text_say("  thin: %.4g (%.2f sizes) at %s%s", all->thin[i].thickness, share, text_place(&place, all->thin[i].place),
-             share < 1 ? ": may be lost" : "");
+  for (size_t i = 0; i < rough && i < SAID; ++i) {
+    const double share = list->place[i].thickness / size;
+    text_say("  %s of %.4g (%.2f sizes) at %s%s%s", name, list->place[i].thickness, share,
+             text_place(&place, list->place[i].place), share < kept_down_to ? ": may be " : "", share < kept_down_to ? fate : "");
   }
+  if (lost > 0)
+    text_say("  at size %.4g %s%zu %s%s below half a size may be %s; a size of %.4g keeps them", size,
+             lost == THIN_CAPACITY ? "at least " : "", lost, name, lost == 1 ? "" : "s", fate,
+             list->place[0].thickness / kept_down_to);
 }
 
 /* Three digits: an estimate has no more. */
@@ -84,7 +99,8 @@ static laves_result info_steps(session *run, info_run *all) {
   if (all->has_cost) result = estimate_varying(run, &all->in, all->sizing, &all->cost);
   if (result != LAVES_OK) return result;
   const double start = progress_now();
-  all->thin_count = laves_domain_thin_places(all->in.domain, all->thin, THIN_CAPACITY);
+  all->walls.count = laves_domain_thin_places(all->in.domain, all->walls.place, THIN_CAPACITY);
+  all->gaps.count = laves_domain_gap_places(all->in.domain, all->gaps.place, THIN_CAPACITY);
   all->thin_seconds = progress_now() - start;
   result = session_settle(run, LAVES_OK);
   if (result != LAVES_OK) return result;
@@ -93,9 +109,21 @@ static laves_result info_steps(session *run, info_run *all) {
   if (!session_speaks(run)) return LAVES_OK;
   say_measures(all);
   say_tags(all);
-  say_thin(all);
+  say_thin(all, &all->walls, "wall", "lost");
+  say_thin(all, &all->gaps, "gap", "closed");
   say_cost(all);
   return LAVES_OK;
+}
+
+static void write_places(json *out, const char *key, const thin_list *list) {
+  json_open_array(out, key);
+  for (size_t i = 0; i < list->count; ++i) {
+    json_open_object(out, NULL);
+    json_numbers(out, "place", list->place[i].place, 3);
+    json_number(out, "thickness", list->place[i].thickness);
+    json_close(out);
+  }
+  json_close(out);
 }
 
 static void info_json(json *out, const session *run, const void *facts) {
@@ -106,14 +134,8 @@ static void info_json(json *out, const session *run, const void *facts) {
     estimate_write_json(out, &all->cost);
     json_close(out);
   }
-  json_open_array(out, "thin_places");
-  for (size_t i = 0; i < all->thin_count; ++i) {
-    json_open_object(out, NULL);
-    json_numbers(out, "place", all->thin[i].place, 3);
-    json_number(out, "thickness", all->thin[i].thickness);
-    json_close(out);
-  }
-  json_close(out);
+  write_places(out, "thin_places", &all->walls);
+  write_places(out, "gap_places", &all->gaps);
   json_open_object(out, "seconds");
   json_number(out, "read", all->in.seconds);
   json_number(out, "thin_places", all->thin_seconds);

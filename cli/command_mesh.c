@@ -44,6 +44,7 @@ static laves_options make_options(const settings *given, const laves_sizing *siz
   options.improve = !given->no_improve;
   options.regions = given->regions;
   options.face_sources = given->face_sources;
+  options.keep_thin = !given->no_keep_thin;
   if (given->window.given) {
     options.min_dihedral = given->window.values[0];
     options.max_dihedral = given->window.values[1];
@@ -205,6 +206,7 @@ static void write_options(json *out, const settings *given, const laves_options 
   json_text(out, "method", methods[options->method]);
   json_number(out, "guarantee", options->guarantee);
   json_boolean(out, "improve", options->improve);
+  json_boolean(out, "keep_thin", options->keep_thin);
   json_numbers(out, "window", (const double[2]){options->min_dihedral, options->max_dihedral}, 2);
   json_number(out, "volume_length", options->volume_length);
   json_text(out, "regions", options->regions == LAVES_REGIONS_PARTS ? "parts" : "none");
@@ -245,11 +247,34 @@ static void write_report(json *out, const mesh_run *all) {
   write_making(out, report);
 }
 
+/* Pieces and genus of the boundary, and where it lost something. */
+static void write_thin(json *out, const laves_report *report) {
+  json_open_object(out, "thin");
+  json_boolean(out, "topology_known", report->topology_known);
+  json_number(out, "domain_pieces", report->topology_known ? (double)report->domain_pieces : NAN);
+  json_number(out, "domain_genus", report->topology_known ? (double)report->domain_genus : NAN);
+  json_integer(out, "pieces", (int64_t)report->pieces);
+  json_integer(out, "genus", report->genus);
+  json_open_array(out, "lost");
+  for (size_t i = 0; i < report->lost_count; ++i) {
+    json_open_object(out, NULL);
+    json_text(out, "kind", report->lost[i].kind == LAVES_THIN_GAP ? "gap" : "wall");
+    json_numbers(out, "place", report->lost[i].place, 3);
+    json_number(out, "thickness", report->lost[i].thickness);
+    json_close(out);
+  }
+  json_close(out);
+  json_close(out);
+}
+
 static void mesh_json(json *out, const session *run, const void *facts) {
   const mesh_run *all = facts;
   if (all->in.text) input_write_json(out, "input", &all->in);
   if (all->options.cookie) write_options(out, run->given, &all->options);
-  if (all->mesh) write_report(out, all);
+  if (all->mesh) {
+    write_report(out, all);
+    write_thin(out, &all->report);
+  }
   if (all->has_certificate) {
     summary_check_json(out, &all->certificate.check);
     statement_write_json(out, &all->certificate);

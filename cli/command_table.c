@@ -112,6 +112,8 @@ const option option_rows[] = {
      "promise, as with --method snap"},
     {"no-improve", 0, MESH, IN_SHAPE, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(no_improve), 0,
      "leave the boundary layer as it was made"},
+    {"no-keep-thin", 0, MESH, IN_SHAPE, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(no_keep_thin), 0,
+     "nothing is done for walls and gaps thinner than the size, which are kept down to half the size otherwise"},
     {"window", 0, MESH, IN_SHAPE, OPTION_WINDOW, "LO,HI", "degrees", false, 0, 180, "40,125", MEMBER(window), 0,
      "asked range of every dihedral angle (LO 0..60, HI 80..180); exit code 3 when it or --volume-length is missed"},
     {"volume-length", 0, MESH, IN_SHAPE, OPTION_REAL, "Q", NULL, false, 0, 0.8, "0.6", MEMBER(volume_length), 0,

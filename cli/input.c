@@ -133,6 +133,7 @@ void input_write_json(json *out, const char *key, const input *in) {
     json_integer(out, "points", (int64_t)info->point_count);
     json_integer(out, "triangles", (int64_t)info->triangle_count);
     json_integer(out, "components", (int64_t)info->component_count);
+    json_number(out, "genus", info->topology_known ? (double)info->genus : NAN);
     json_boolean(out, "closed", info->closed);
     json_boolean(out, "turned", info->turned);
     json_boolean(out, "winding", info->winding);

@@ -38,7 +38,7 @@ typedef struct settings {
   double size, relative_size; /* 0: not given */
   int64_t tets, vertices;     /* 0: not given */
   option_alignment alignment;
-  bool no_improve, ascii, quiet, verbose;
+  bool no_improve, no_keep_thin, ascii, quiet, verbose;
   bool face_sources;
   laves_regions regions;
   option_numbers window; /* lowest, highest dihedral angle */

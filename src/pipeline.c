@@ -18,6 +18,7 @@
 #include "graded/wishes.h"
 #include "improve/improve.h"
 #include "improve/release.h"
+#include "losses.h"
 #include "options.h"
 #include "regions.h"
 #include "snap/snap.h"
@@ -159,7 +160,7 @@ static laves_result snap(run *r) {
   laves__layer_free(&r->layer);
   memset(&r->counts, 0, sizeof r->counts);
   memset(&r->stuffed, 0, sizeof r->stuffed);
-  const laves_result result = laves__snap(&r->frame, &r->lattice, &r->layer, &r->counts, r->error);
+  const laves_result result = laves__snap(&r->frame, r->options->keep_thin, &r->lattice, &r->layer, &r->counts, r->error);
   end_stage(r, "snap");
   return result;
 }
@@ -511,6 +512,29 @@ static laves_result judge_features(run *r) {
   return LAVES_OK;
 }
 
+/* What became of thin parts. Where a place is known the sentence about pinches names the first. */
+static laves_result judge_thin(run *r, const laves_mesh *mesh) {
+  laves_report *report = r->report;
+  char text[sizeof report->warnings[0]];
+  report->lost_count = r->counts.lost_count;
+  memcpy(report->lost, r->counts.lost, sizeof report->lost);
+  if (report->pinches) {
+    const laves_thin_place *p = &report->lost[0];
+    char place[80] = "";
+    if (report->lost_count) snprintf(place, sizeof place, ", as at (%.6g, %.6g, %.6g)", p->place[0], p->place[1], p->place[2]);
+    warn(r,
+         "at %zu places the solid is thinner than the size, or its parts closer; walls were trimmed or parts set apart there%s",
+         report->pinches, place);
+  }
+  if (r->counts.specks)
+    warn(r, "%zu parts of a few tetrahedra, beyond places thinner than the size, were dropped", r->counts.specks);
+  begin_stage(r);
+  const laves_result result = laves__find_losses(&r->frame, r->domain, mesh, report, text, sizeof text, r->error);
+  end_stage(r, "topology");
+  if (text[0]) warn(r, "%s", text);
+  return result;
+}
+
 /* The last word on targets: what was asked and is not there. */
 static laves_result judge(run *r, const laves_mesh *mesh) {
   const laves_options *o = r->options;
@@ -531,11 +555,8 @@ static laves_result judge(run *r, const laves_mesh *mesh) {
       &(laves__window){.min_dihedral = o->min_dihedral, .max_dihedral = o->max_dihedral, .volume_length = o->volume_length},
       &r->layer);
   report->peak_bytes = laves_context_peak_bytes(r->context);
-  if (report->pinches)
-    warn(r, "at %zu places the solid is thinner than the size, or its parts closer; walls were trimmed or parts set apart there",
-         report->pinches);
-  if (r->counts.specks)
-    warn(r, "%zu parts of a few tetrahedra, beyond places thinner than the size, were dropped", r->counts.specks);
+  const laves_result known = judge_thin(r, mesh);
+  if (known != LAVES_OK) return known;
   if (report->off_surface)
     warn(r, "%zu boundary vertices stand off the surface, where it is too sharp or thin for the size%s", report->off_surface,
          report->relaxed_vertices ? ", or where the guarantee moved them" : "");

@@ -186,6 +186,8 @@ typedef struct laves_domain_info {
   size_t point_count;      ///< different points that faces use
   size_t triangle_count;   ///< faces in use
   size_t component_count;  ///< parts joined by edges
+  bool topology_known;     ///< closed, manifold, without crossings: the solid's boundary has component_count pieces, and
+  int64_t genus;           ///< this genus, summed over them; 0 where it is not known
   bool closed;             ///< every edge is used as often forwards as backwards
   bool turned;             ///< the input was inside out and was turned
   bool winding;            ///< inside is decided by the generalised winding number
@@ -198,10 +200,13 @@ LAVES_API void laves_domain_get_info(const laves_domain *domain, laves_domain_in
 /// Name of a tag (STL solid, OBJ group, part of a script, ...), or NULL when index is not in [0, tag_count). Owned by the domain.
 LAVES_API const char *laves_domain_tag_name(const laves_domain *domain, int index);
 
-/// One place where a solid is thin.
+typedef enum laves_thin_kind { LAVES_THIN_WALL, LAVES_THIN_GAP } laves_thin_kind;
+
+/// One place where a solid is thin, or where two parts of its surface are close across a gap.
 typedef struct laves_thin_place {
-  double place[3];
-  double thickness;  ///< length of the chord through the solid, against the surface normal
+  double place[3];       ///< the middle of the chord
+  double thickness;      ///< length of the chord: through the solid, against the surface normal; of a gap, along it
+  laves_thin_kind kind;  ///< what the chord passes through
 } laves_thin_place;
 
 /// Finds the thinnest parts of a surface by chords shot inwards from the surface at a fixed set of samples.
@@ -209,6 +214,8 @@ typedef struct laves_thin_place {
 /// @param capacity  how many places at most
 /// @return how many were found; 0 for domains that are not surfaces
 LAVES_API size_t laves_domain_thin_places(const laves_domain *domain, laves_thin_place *places, size_t capacity);
+/// The same for the narrowest gaps, by chords shot outwards.
+LAVES_API size_t laves_domain_gap_places(const laves_domain *domain, laves_thin_place *places, size_t capacity);
 
 /* ---- sizing ----------------------------------------------------------------------------------------------------- */
 
@@ -343,7 +350,7 @@ LAVES_API laves_options laves_options_default(void);
 
 typedef struct laves_mesh laves_mesh;
 
-enum { LAVES_STAGE_CAPACITY = 16, LAVES_WARNING_CAPACITY = 16 };
+enum { LAVES_STAGE_CAPACITY = 16, LAVES_WARNING_CAPACITY = 16, LAVES_LOST_CAPACITY = 16 };
 
 /// What was done: filled by laves_generate().
 typedef struct laves_report {
@@ -375,6 +382,13 @@ typedef struct laves_report {
   size_t features_released;  ///< vertices that were let go of where features come closer to one another than the size
   size_t creases_dropped;    ///< that were too short for the size, or roughness of the surface
   size_t creases_joined;     ///< gaps between creases that were closed
+  // What became of thin parts. Places: where walls were trimmed and parts set apart; where topology differs, also those where
+  // mesh and surface are far apart and the solid is thin or has a gap. At most so many, not two within a size.
+  bool topology_known;                         ///< that of the domain's boundary is (laves_domain_info)
+  size_t domain_pieces, pieces;                ///< of the boundary: of the domain (0: unknown), of the mesh
+  int64_t domain_genus, genus;                 ///< of the boundary, summed over pieces
+  size_t lost_count;                           ///< of those listed
+  laves_thin_place lost[LAVES_LOST_CAPACITY];  ///< `thickness` is INFINITY where neither a wall nor a gap near by is the cause
   int warning_count;
   char warnings[LAVES_WARNING_CAPACITY][240];
 } laves_report;

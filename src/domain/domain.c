@@ -182,14 +182,22 @@ const char *laves_domain_tag_name(const laves_domain *domain, int index) {
   return index >= 0 && index < domain->info.tag_count && domain->tag_names ? domain->tag_names[index] : NULL;
 }
 
-size_t laves_domain_thin_places(const laves_domain *domain, laves_thin_place *places, size_t capacity) {
+static size_t places_of_kind(const laves_domain *domain, laves_thin_kind kind, laves_thin_place *places, size_t capacity) {
   const laves__oracle *oracle = &domain->oracle;
   if (!oracle->thin_places) return 0;
-  const size_t count = oracle->thin_places(oracle->self, places, capacity);
+  const size_t count = oracle->thin_places(oracle->self, kind, places, capacity);
   for (size_t i = 0; i < count; i++) {
     places[i].place[0] += oracle->origin.x;
     places[i].place[1] += oracle->origin.y;
     places[i].place[2] += oracle->origin.z;
   }
   return count;
+}
+
+size_t laves_domain_thin_places(const laves_domain *domain, laves_thin_place *places, size_t capacity) {
+  return places_of_kind(domain, LAVES_THIN_WALL, places, capacity);
+}
+
+size_t laves_domain_gap_places(const laves_domain *domain, laves_thin_place *places, size_t capacity) {
+  return places_of_kind(domain, LAVES_THIN_GAP, places, capacity);
 }

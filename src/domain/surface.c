@@ -289,6 +289,7 @@ static bool solve(laves__surface *s, laves_domain_info *info) {
   if (!s->face_flags || !build_tree(s, NULL) || !laves__surface_topology(s, info)) goto clean_up;
   if (!laves__surface_crossings(s, &crossings)) goto clean_up;
   note_crossings(s, &crossings, info);
+  const size_t judged = s->face_count;
   if (!info->closed) {
     laves__crossings_free(s->context, &crossings);
     if (!mend(s, info) || !laves__surface_crossings(s, &crossings)) goto clean_up;
@@ -307,6 +308,7 @@ static bool solve(laves__surface *s, laves_domain_info *info) {
     if (!solve_union(s, &crossings, info)) goto clean_up;
   }
   done = laves__surface_normals(s);
+  if (done && s->face_count == judged) done = laves__surface_genus(s, info);
 clean_up:
   laves__crossings_free(s->context, &crossings);
   return done;

@@ -182,6 +182,9 @@ bool laves__surface_drop_repeats(laves__surface *s, bool any_direction, laves_do
 /* Fills `across`, `rim` and doubtful_points (whose faces form no single closed fan), and counts what info holds about edges, fans
  * and components (info may be a scratch copy). False when memory is short. */
 bool laves__surface_topology(laves__surface *s, laves_domain_info *info);
+/* Fills info->topology_known and genus when all else is known of the surface, whose faces are those that were judged; false when
+ * memory is short. */
+bool laves__surface_genus(const laves__surface *s, laves_domain_info *info);
 bool laves__surface_normals(laves__surface *s);
 
 /* Calls fn once for every edge with all its half-edges, ascending; fn may change the list. False when memory is short. */
@@ -280,7 +283,7 @@ bool laves__open_ball_is_certain(const laves__surface *s, laves__vec3 p, double 
 
 /* Functions of the oracle. */
 size_t laves__surface_sample(const void *self, double spacing, laves__vec3 *points, size_t capacity);
-size_t laves__surface_thin_places(const void *self, laves_thin_place *places, size_t capacity);
+size_t laves__surface_thin_places(const void *self, laves_thin_kind kind, laves_thin_place *places, size_t capacity);
 /* Volume of a closed surface that meets itself: partial faces count by the parts of them that bound the solid. */
 double laves__surface_union_volume(const laves__surface *s);
 

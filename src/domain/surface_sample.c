@@ -1,13 +1,13 @@
-/* Samples of a surface, and the thin places of the solid behind it.
+/* Samples of a surface, the thin places of the solid behind it, and the narrow gaps before it.
  *
- * In: the surface and its tree.  Out: points of it, evenly by area; chords through the solid, thinnest first.
+ * In: the surface and its tree.  Out: points of it, evenly by area; chords through the solid or through gaps, shortest first.
  *
  * Samples are taken where the area summed over the faces passes multiples of the area per sample; within a face they follow a
  * sequence that covers the unit square evenly (steps of the plastic number), folded into the triangle. The places are the same in
  * every run.
  *
- * A chord is shot from a sample against the normal and ends at the first face that faces away from it and lies nearly
- * parallel to where it began; wedges, which are thin at every edge, do not count. */
+ * A chord is shot from a sample against the normal (for a gap, along it) and ends at the first face that faces away from where it
+ * began and lies nearly parallel to it; wedges, which are thin at every edge, do not count. */
 #include <stdlib.h>
 
 #include "domain/surface.h"
@@ -74,12 +74,12 @@ size_t laves__surface_sample(const void *self, double spacing, laves__vec3 *poin
 
 /* ---- chords ---- */
 
-/* Length of the chord that begins at the sample, or INFINITY. */
-static double chord(const laves__surface *s, const sample *from) {
-  const laves__vec3 direction = v3_scale(s->face_normals[from->slot], -1);
+/* Length of the chord that begins at the sample and goes inwards (side -1) or outwards (1), or INFINITY. */
+static double chord(const laves__surface *s, const sample *from, int side) {
+  const laves__vec3 direction = v3_scale(s->face_normals[from->slot], side);
   laves__hit hit = {INFINITY, LAVES__NONE};
   laves__bvh_shoot(&s->bvh, from->at, direction, from->slot, &hit);
-  if (hit.slot == LAVES__NONE || v3_dot(s->face_normals[hit.slot], direction) < parallel_min) return INFINITY;
+  if (hit.slot == LAVES__NONE || -side * v3_dot(s->face_normals[hit.slot], direction) < parallel_min) return INFINITY;
   return hit.distance;
 }
 
@@ -106,18 +106,19 @@ static size_t pick(const laves_thin_place *all, size_t count, laves_thin_place *
   return picked;
 }
 
-size_t laves__surface_thin_places(const void *self, laves_thin_place *places, size_t capacity) {
+size_t laves__surface_thin_places(const void *self, laves_thin_kind kind, laves_thin_place *places, size_t capacity) {
   const laves__surface *s = self;
+  const int side = kind == LAVES_THIN_WALL ? -1 : 1;
   size_t picked = 0, count = 0;
   sample *samples = laves__alloc(s->context, THIN_SAMPLES, sizeof *samples);
   laves_thin_place *all = laves__alloc(s->context, THIN_SAMPLES, sizeof *all);
   if (samples && all) {
     const size_t taken = take_samples(s, total_area(s) / THIN_SAMPLES, samples, THIN_SAMPLES);
     for (size_t i = 0; i < taken; i++) {
-      const double length = chord(s, &samples[i]);
+      const double length = chord(s, &samples[i], side);
       if (!isfinite(length)) continue;
-      const laves__vec3 middle = v3_mad(samples[i].at, s->face_normals[samples[i].slot], -0.5 * length);
-      all[count++] = (laves_thin_place){{middle.x, middle.y, middle.z}, length};
+      const laves__vec3 middle = v3_mad(samples[i].at, s->face_normals[samples[i].slot], 0.5 * side * length);
+      all[count++] = (laves_thin_place){{middle.x, middle.y, middle.z}, length, kind};
     }
     qsort(all, count, sizeof *all, compare_places);
     picked = pick(all, count, places, capacity);

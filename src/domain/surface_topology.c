@@ -248,6 +248,29 @@ bool laves__surface_each_edge(const laves__surface *s, laves__edge_fn *fn, void 
   return done;
 }
 
+bool laves__surface_genus(const laves__surface *s, laves_domain_info *info) {
+  static const laves_defect against[] = {LAVES_DEFECT_OPEN_EDGE, LAVES_DEFECT_NONMANIFOLD_EDGE, LAVES_DEFECT_DIRECTION,
+                                         LAVES_DEFECT_NONMANIFOLD_VERTEX, LAVES_DEFECT_CROSSING};
+  if (!info->closed || info->winding) return true;
+  for (size_t f = 0; f < s->face_count; f++)
+    if (s->face_flags[f] & LAVES__PARTIAL) return true; /* it does not bound the solid, or not all of it does */
+  for (size_t i = 0; i < LAVES__COUNT_OF(against); i++)
+    if (info->defects[against[i]]) return true;
+  uint8_t *used = laves__alloc_zeroed(s->context, s->point_count, sizeof *used);
+  if (!used) return false;
+  int64_t points = 0;
+  for (size_t f = 0; f < s->face_count; f++)
+    for (int i = 0; i < 3; i++) {
+      points += !used[s->faces[f][i]];
+      used[s->faces[f][i]] = 1;
+    }
+  laves__free(s->context, used, s->point_count, sizeof *used);
+  /* Euler: points - edges + faces = 2 components - 2 genus, with three edges for every two faces. */
+  info->topology_known = true;
+  info->genus = (int64_t)info->component_count - (points - (int64_t)s->face_count / 2) / 2;
+  return true;
+}
+
 /* ---- normals and measures ---- */
 
 bool laves__surface_normals(laves__surface *s) {

@@ -41,6 +41,7 @@ static const double block_side = 15;        /* local sizes; see above */
 static const double worthwhile = 0.02;      /* share of bad tets that a pass must cure to be followed by its like */
 static const double thorough_below = 0.985; /* quality below which the few that remain get more patience */
 static const double far_outside = 0.75;     /* quality: about 36 to 131 degrees for the standard window */
+static const double wall_admit = 0.8;       /* quality: about 37 to 128 degrees; enough for tets that span a wall */
 static const double graded_crowd = 0.1;     /* what `crowd` is on a graded background, after flips */
 static const double peel_below = 0.5;       /* quality below which a tet between two surfaces is taken away, if it can be */
 static const double settle_floor = 0.2;     /* quality that bringing a vertex back to the surface may cost: about 18 degrees */
@@ -97,7 +98,17 @@ static void measure_all(void *user, size_t begin, size_t end, int worker) {
     if (w->layer->tet[t][0] >= 0) w->layer->quality[t] = laves__layer_quality(&w->measure, w->layer, (int32_t)t);
 }
 
-static bool is_bad(const work *w, int32_t t) { return w->layer->tet[t][0] >= 0 && w->layer->quality[t] < w->admit; }
+/* Whether a tet is the whole of a wall: all its corners are on the surface. */
+static bool spans_wall(const laves__layer *layer, int32_t t) {
+  const int32_t *v = layer->tet[t];
+  return layer->depth[v[0]] + layer->depth[v[1]] + layer->depth[v[2]] + layer->depth[v[3]] == 0;
+}
+
+/* Contraction is dear, and in walls a tet thick it seldom reaches the asked window. */
+static bool is_bad(const work *w, int32_t t) {
+  if (w->layer->tet[t][0] < 0 || !(w->layer->quality[t] < w->admit)) return false;
+  return w->rounds == 0 || w->layer->quality[t] < wall_admit || !spans_wall(w->layer, t);
+}
 
 /* The least power of two that no size at the corners of a tet exceeds. */
 static int level_of(const laves__layer *layer, int32_t tet) {

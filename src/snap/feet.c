@@ -94,14 +94,23 @@ static void find_record_feet(const laves__frame *frame, const laves__lattice *la
   }
 }
 
-bool laves__lies_inside(const laves__frame *frame, laves__vec3 point, double depth) {
+/* Whether a point lies on a side (-1 inside, 1 outside), at least `depth` from the surface. */
+static bool lies_beyond(const laves__frame *frame, laves__vec3 point, double depth, int side) {
   double phi;
   laves__frame_evaluate(frame, 1, &point, &phi, NULL);
-  if (!(phi < 0)) return false;
-  if (frame->oracle->is_distance) return phi < -depth;
+  if (!(side * phi > 0)) return false;
+  if (frame->oracle->is_distance) return side * phi > depth;
   uint32_t hint = LAVES__NO_HINT; /* phi has no unit: the foot tells */
   laves__vec3 foot, normal;
   return !laves__frame_project(frame, point, depth, &hint, &foot, &normal) || v3_distance(point, foot) > depth;
+}
+
+bool laves__lies_inside(const laves__frame *frame, laves__vec3 point, double depth) {
+  return lies_beyond(frame, point, depth, -1);
+}
+
+bool laves__lies_outside(const laves__frame *frame, laves__vec3 point, double depth) {
+  return lies_beyond(frame, point, depth, 1);
 }
 
 typedef struct search {

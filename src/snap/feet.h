@@ -39,5 +39,7 @@ void laves__feet_free(laves__feet *feet);
 
 /* Whether a point lies inside, at least `depth` sizes from the surface. */
 bool laves__lies_inside(const laves__frame *frame, laves__vec3 point, double depth);
+/* The same outside. */
+bool laves__lies_outside(const laves__frame *frame, laves__vec3 point, double depth);
 
 #endif

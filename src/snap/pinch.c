@@ -223,6 +223,19 @@ bool laves__part_site(const laves__lattice *lattice, int32_t record, int site, l
   return true;
 }
 
+void laves__parted_free(laves_context *context, laves__parted *parted) {
+  laves__free(context, parted->item, parted->capacity, sizeof *parted->item);
+  laves__free(context, parted->trimmed, parted->trimmed_capacity, sizeof *parted->trimmed);
+  memset(parted, 0, sizeof *parted);
+}
+
+static bool note_trimmed(laves_context *context, laves__parted *parted, uint32_t id) {
+  if (!laves__grow(context, &parted->trimmed, &parted->trimmed_capacity, parted->trimmed_count + 1, sizeof *parted->trimmed))
+    return false;
+  parted->trimmed[parted->trimmed_count++] = id;
+  return true;
+}
+
 /* Room around the walls, so that they can be trimmed; false when memory is short. */
 static bool make_room_at_walls(repair *w) {
   laves__lattice *lattice = w->lattice;
@@ -249,6 +262,7 @@ static bool mend_site(const repair *w, laves__site s, laves__parted *parted, siz
   if (now == INTERIOR) {
     lattice->record[s.cell].label[s.site] = LAVES__LABEL_IN;
   } else if (now == WALL && found == WALL) { /* only there room was made */
+    if (!note_trimmed(lattice->context, parted, laves__site_id(s))) return false;
     trim(lattice, s);
     ++*pinches;
   } else {

@@ -25,16 +25,16 @@ laves_result laves__find_surface_feet(const laves__frame *frame, const laves__la
   return result;
 }
 
-laves_result laves__snap(const laves__frame *frame, laves__lattice *lattice, laves__layer *layer, laves__snap_counts *counts,
-                         laves_error *error) {
+laves_result laves__snap(const laves__frame *frame, bool keep_thin, laves__lattice *lattice, laves__layer *layer,
+                         laves__snap_counts *counts, laves_error *error) {
   laves_context *context = lattice->context;
   laves__parted parted = {0};
   laves__feet feet = {0};
   laves__vec3 *start = NULL;
   laves_result result = laves__cover(frame, lattice, &feet, error);
-  if (result == LAVES_OK) result = laves__thin_cover(frame, lattice, &feet, error);
+  if (result == LAVES_OK && keep_thin) result = laves__thin_cover(frame, lattice, &feet, error);
   if (result == LAVES_OK) result = laves__find_surface_feet(frame, lattice, &feet, error);
-  if (result == LAVES_OK) result = laves__tip_cover(frame, lattice, &feet, error);
+  if (result == LAVES_OK && keep_thin) result = laves__tip_cover(frame, lattice, &feet, error);
   if (result == LAVES_OK) result = laves__find_solid(frame, lattice, &feet, error);
   if (result == LAVES_OK) result = laves__pinch_repair(lattice, &parted, &counts->pinches, error);
   if (result == LAVES_OK) result = laves__find_surface_feet(frame, lattice, &feet, error); /* of sites that went ON since */
@@ -45,11 +45,12 @@ laves_result laves__snap(const laves__frame *frame, laves__lattice *lattice, lav
     if (!start) result = laves__fail_memory(context, error);
   }
   if (result == LAVES_OK) {
+    laves__list_lost(frame, lattice, &parted, counts);
     counts->specks = laves__layer_drop_specks(layer);
     counts->off_surface = laves__layer_untangle(layer, start);
     for (size_t v = 0; v < layer->vertex_count; v++) counts->snapped += layer->depth[v] == 0;
   }
   laves__free(context, start, layer->vertex_count, sizeof *start);
-  laves__free(context, parted.item, parted.capacity, sizeof *parted.item);
+  laves__parted_free(context, &parted);
   return result;
 }

@@ -5,11 +5,14 @@
  * corners have moved: clearly inside, and of a shape that improvement can work with. */
 #include <string.h>
 
+#include "mesh/mesh.h"
 #include "mesh/quality.h"
 #include "snap/snap.h"
 
 /* Sizes: how deep the middle must lie; less where a corner is ON for the sake of a thin part. */
 static const double depth_min = 0.12, thin_depth_min = 0.03;
+/* Sizes: how far outside an edge or a face of a tet in a wall may pass; a surface of radius 1.5 rises 0.09 over an edge. */
+static const double pierced_min = 0.1;
 static const double cosine_limit = 0.9945; /* dihedral angles within 6 and 174 degrees */
 static const double volume6_min = 1e-3;    /* six times the volume, in cubes of the size; a regular tet has 0.71 */
 
@@ -59,6 +62,23 @@ static bool find_on(const laves__lattice *lattice, const laves__record *r, uint3
   return any != 0;
 }
 
+/* Whether the outside reaches deep into a tet of a wall, though its middle lies inside: a hole narrower than the size passes
+ * there, and would be closed. */
+static bool is_pierced(const search *s, const laves__vec3 p[4], double scale) {
+  enum { STEPS = 4 };
+  for (int k = 0; k < 4; k++) {
+    const uint8_t *f = laves__tet_face[k];
+    const laves__vec3 middle = v3_scale(v3_add(v3_add(p[f[0]], p[f[1]]), p[f[2]]), 1.0 / 3);
+    if (laves__lies_outside(s->frame, middle, pierced_min * scale)) return true;
+  }
+  for (int e = 0; e < 6; e++)
+    for (int i = 1; i < STEPS; i++) {
+      const laves__vec3 at = v3_lerp(p[laves__tet_edge[e][0]], p[laves__tet_edge[e][1]], (double)i / STEPS);
+      if (laves__lies_outside(s->frame, at, pierced_min * scale)) return true;
+    }
+  return false;
+}
+
 static void judge_tet(const search *s, laves__tet tet) {
   laves__vec3 p[4];
   double scale;
@@ -66,7 +86,7 @@ static void judge_tet(const search *s, laves__tet tet) {
   if (!all_on(s, tet, p, &scale, &forced) || !laves__solid_shape(p, scale)) return;
   laves__toggle_tet(s->lattice, tet, LAVES__TET_ELIGIBLE);
   const laves__vec3 middle = v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25);
-  if (laves__lies_inside(s->frame, middle, (forced ? thin_depth_min : depth_min) * scale))
+  if (laves__lies_inside(s->frame, middle, (forced ? thin_depth_min : depth_min) * scale) && !(forced && is_pierced(s, p, scale)))
     laves__toggle_tet(s->lattice, tet, LAVES__TET_SOLID);
 }
 

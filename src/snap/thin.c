@@ -16,10 +16,12 @@
 #include "snap/snap.h"
 
 enum { ROUNDS = 4, SAMPLES = 3 };
-static const double misfit_min = 0.3; /* root mean square deviation from a plane, sizes; a sphere of radius 3 has 0.1 */
-static const double reach = 1.2;      /* sizes from the surface within which an end must lie */
-static const double opposed = -0.2;   /* cosine between the outward directions at the ends */
-static const double depth_min = 0.15; /* sizes: how deep a sample must lie on the other side */
+static const double misfit_min = 0.3;        /* root mean square deviation from a plane, sizes; a sphere of radius 3 has 0.1 */
+static const double reach = 1.2;             /* sizes from the surface within which an end must lie */
+static const double opposed = -0.2;          /* cosine between the outward directions at the ends */
+static const double depth_min = 0.15;        /* sizes: how deep a sample must lie on the other side */
+static const double strictly_opposed = -0.7; /* the same between two sheets of a wall */
+static const double sheet_depth = 0.1;       /* sizes: what depth_min is between two sheets */
 
 typedef struct thinning {
   const laves__frame *frame;
@@ -28,6 +30,11 @@ typedef struct thinning {
   uint32_t *suspects; /* [record_count] bit for each site */
   uint32_t *turns_on; /* [record_count] sites that go ON after this round */
 } thinning;
+
+/* The end of an edge, its foot, and the surface's outward normal there. */
+typedef struct edge_end {
+  laves__vec3 at, foot, normal;
+} edge_end;
 
 /* Whether phi around a site is far from linear. The star of a site is nearly isotropic, so the slope is a weighted sum. */
 static bool is_suspect(const thinning *t, laves__site s) {
@@ -72,30 +79,82 @@ static void find_suspects(void *user, size_t begin, size_t end, int worker) {
   }
 }
 
-/* The end of an edge: its foot when ON, else the site. Outwards is away from the solid, or from the foot of an inner site
- * towards it. False when the site has no foot near. */
-static bool end_of_edge(const thinning *t, laves__site s, laves__vec3 *end, laves__vec3 *outwards) {
+/* Sites beside a suspect on the other side of the surface are suspects as well: from beyond a wall or gap that holds few sites,
+ * phi may look linear. */
+static bool is_beside_suspect(const thinning *t, laves__site s) {
+  const laves__record *r = &t->lattice->record[s.cell];
+  if (!isfinite(r->phi[s.site])) return false;
+  if (t->frame->oracle->is_distance && !(fabs(r->phi[s.site]) < reach * laves__site_scale(t->lattice, s))) return false;
+  const laves__ring ring = laves__ring_of(t->lattice, s);
+  for (int k = 0; k < ring.count; k++) {
+    const laves__site n = laves__ring_at(&ring, k);
+    if (n.cell < 0 || t->lattice->record[n.cell].sign[n.site] == r->sign[s.site]) continue;
+    if (t->suspects[n.cell] >> n.site & 1) return true;
+  }
+  return false;
+}
+
+static void find_company(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const thinning *t = user;
+  for (size_t i = begin; i < end; i++) {
+    t->turns_on[i] = t->suspects[i];
+    for (int site = 0; site < LAVES__C15_SITES; site++)
+      if (is_beside_suspect(t, (laves__site){(int32_t)i, (uint8_t)site})) t->turns_on[i] |= UINT32_C(1) << site;
+  }
+}
+
+/* The end of an edge: its foot when ON, else the site. False when the site has no foot near. */
+static bool end_of_edge(const thinning *t, laves__site s, edge_end *end) {
   const laves__foot *foot = laves__feet_get(t->feet, s.cell, s.site);
   if (!foot) return false;
   const laves__vec3 p = laves__site_place(t->lattice, s);
   if (!(v3_distance(p, foot->position) < reach * laves__site_scale(t->lattice, s))) return false;
-  *end = laves__site_label(t->lattice, s) == LAVES__LABEL_ON ? foot->position : p;
-  *outwards = v3(foot->normal[0], foot->normal[1], foot->normal[2]);
+  *end = (edge_end){.at = laves__site_label(t->lattice, s) == LAVES__LABEL_ON ? foot->position : p,
+                    .foot = foot->position,
+                    .normal = v3(foot->normal[0], foot->normal[1], foot->normal[2])};
   return true;
 }
 
-/* Whether an edge passes through a wall: see the drawing. */
-static bool passes_through(const thinning *t, laves__site s, laves__site other) {
-  const laves__label a = laves__site_label(t->lattice, s), b = laves__site_label(t->lattice, other);
-  if (a == LAVES__LABEL_ON && b == LAVES__LABEL_ON) return false;
-  if (laves__site_sign(t->lattice, s) != laves__site_sign(t->lattice, other)) return false;
-  if (a != LAVES__LABEL_OUT && b != LAVES__LABEL_OUT) return false;
-  laves__vec3 from, to, n_from, n_to;
-  if (!end_of_edge(t, s, &from, &n_from) || !end_of_edge(t, other, &to, &n_to)) return false;
-  if (v3_dot(n_from, n_to) > opposed) return false;
+/* The share of the way from one end to the other after which it is behind the surface at its own foot, taken as a plane;
+ * behind is inside for a wall (side -1), outside for a gap (side 1). 0 where it is there from the start. */
+static double entry(const edge_end *from, const edge_end *to, int side) {
+  const double a = side * v3_dot(v3_sub(from->at, from->foot), from->normal);
+  const double b = side * v3_dot(v3_sub(to->at, from->foot), from->normal);
+  return b > a ? fmin(fmax(-a / (b - a), 0), 1) : 0;
+}
+
+static bool lies_beyond(const thinning *t, laves__vec3 point, double depth, int side) {
+  return side < 0 ? laves__lies_inside(t->frame, point, depth) : laves__lies_outside(t->frame, point, depth);
+}
+
+/* Whether an edge passes through a wall (side -1) or a gap (1): see the drawing. */
+static bool passes_through(const thinning *t, laves__site s, laves__site other, int side) {
+  const laves__label free = side < 0 ? LAVES__LABEL_OUT : LAVES__LABEL_IN;
+  if (laves__site_label(t->lattice, s) != free && laves__site_label(t->lattice, other) != free) return false;
+  edge_end a, b;
+  if (!end_of_edge(t, s, &a) || !end_of_edge(t, other, &b)) return false;
+  const double cosine = v3_dot(a.normal, b.normal);
+  if (cosine > opposed) return false;
   const double scale = 0.5 * (laves__site_scale(t->lattice, s) + laves__site_scale(t->lattice, other));
-  for (int i = 0; i < SAMPLES; i++)
-    if (laves__lies_inside(t->frame, v3_lerp(from, to, (i + 1.0) / (SAMPLES + 1)), depth_min * scale)) return true;
+  if (side < 0 && laves__site_sign(t->lattice, s) == laves__site_sign(t->lattice, other))
+    for (int i = 0; i < SAMPLES; i++)
+      if (laves__lies_inside(t->frame, v3_lerp(a.at, b.at, (i + 1.0) / (SAMPLES + 1)), depth_min * scale)) return true;
+  if (cosine > strictly_opposed) return false;
+  const double begin = entry(&a, &b, side), end = 1 - entry(&b, &a, side);
+  return begin < end && lies_beyond(t, v3_lerp(a.at, b.at, 0.5 * (begin + end)), sheet_depth * scale, side);
+}
+
+/* Whether a site goes ON for the sake of a wall or gap that it stands beside. */
+static bool shall_turn_on(const thinning *t, laves__site s) {
+  const laves__label label = laves__site_label(t->lattice, s);
+  if (label == LAVES__LABEL_ON) return false;
+  const int side = label == LAVES__LABEL_OUT ? -1 : 1;
+  const laves__ring ring = laves__ring_of(t->lattice, s);
+  for (int k = 0; k < ring.count; k++) {
+    const laves__site n = laves__ring_at(&ring, k);
+    if (n.cell >= 0 && t->suspects[n.cell] >> n.site & 1 && passes_through(t, s, n, side)) return true;
+  }
   return false;
 }
 
@@ -104,18 +163,9 @@ static void look_at_edges(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const thinning *t = user;
   for (size_t i = begin; i < end; i++) {
-    const laves__record *r = &t->lattice->record[i];
     t->turns_on[i] = 0;
-    for (uint32_t mask = t->suspects[i]; mask; mask &= mask - 1) {
-      const laves__site s = {(int32_t)i, (uint8_t)__builtin_ctz(mask)};
-      const laves__ring ring = laves__ring_of(t->lattice, s);
-      for (int k = 0; k < ring.count && r->label[s.site] != LAVES__LABEL_ON; k++) {
-        const laves__site n = laves__ring_at(&ring, k);
-        if (n.cell < 0 || !(t->suspects[n.cell] >> n.site & 1) || !passes_through(t, s, n)) continue;
-        t->turns_on[i] |= mask & -mask;
-        break;
-      }
-    }
+    for (uint32_t mask = t->suspects[i]; mask; mask &= mask - 1)
+      if (shall_turn_on(t, (laves__site){(int32_t)i, (uint8_t)__builtin_ctz(mask)})) t->turns_on[i] |= mask & -mask;
   }
 }
 
@@ -123,8 +173,9 @@ static bool turn_on(const thinning *t) {
   bool any = false;
   for (size_t i = 0; i < t->lattice->record_count; i++)
     for (uint32_t mask = t->turns_on[i]; mask; mask &= mask - 1) {
-      t->lattice->record[i].label[__builtin_ctz(mask)] = LAVES__LABEL_ON;
-      t->lattice->record[i].forced |= mask & -mask;
+      laves__record *r = &t->lattice->record[i];
+      if (r->label[__builtin_ctz(mask)] == LAVES__LABEL_OUT) r->forced |= mask & -mask;
+      r->label[__builtin_ctz(mask)] = LAVES__LABEL_ON;
       any = true;
     }
   return any;
@@ -141,6 +192,13 @@ laves_result laves__thin_cover(const laves__frame *frame, laves__lattice *lattic
     goto cleanup;
   }
   if (!laves__parallel_for(context, "snap", records, 16, find_suspects, &t)) result = laves__fail_cancelled(error);
+  if (result == LAVES_OK && !laves__parallel_for(context, "snap", records, 16, find_company, &t))
+    result = laves__fail_cancelled(error);
+  if (result == LAVES_OK) {
+    uint32_t *const swap = t.suspects;
+    t.suspects = t.turns_on;
+    t.turns_on = swap;
+  }
   if (result == LAVES_OK) result = laves__feet_find(frame, lattice, t.suspects, feet, error);
   for (int round = 0; result == LAVES_OK && round < ROUNDS; round++) {
     if (!laves__parallel_for(context, "snap", records, 16, look_at_edges, &t))
@@ -148,6 +206,7 @@ laves_result laves__thin_cover(const laves__frame *frame, laves__lattice *lattic
     else if (!turn_on(&t))
       break;
   }
+  if (result == LAVES_OK) result = laves__side_cover(frame, t.suspects, lattice, feet, error);
 cleanup:
   laves__free(context, t.turns_on, records, sizeof *t.turns_on);
   laves__free(context, t.suspects, records, sizeof *t.suspects);

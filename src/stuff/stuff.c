@@ -86,6 +86,6 @@ laves_result laves__stuff(const laves__frame *frame, const laves__guarantee *gua
   laves__free_stuffing(&s);
   laves__feet_free(&feet);
   laves__cuts_free(&cuts);
-  laves__free(lattice->context, parted.item, parted.capacity, sizeof *parted.item);
+  laves__parted_free(lattice->context, &parted);
   return result;
 }

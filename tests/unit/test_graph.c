@@ -44,7 +44,7 @@ static laves_mesh *mesh_graph(stages *s, laves__graph *graph) {
   laves__snap_counts counts = {0};
   must(laves__lattice_of_graph(s->context, graph, &s->lattice, &error), &error);
   must(laves__classify(&s->frame, &s->lattice, &error), &error);
-  must(laves__snap(&s->frame, &s->lattice, &s->layer, &counts, &error), &error);
+  must(laves__snap(&s->frame, true, &s->lattice, &s->layer, &counts, &error), &error);
   s->pinches = counts.pinches;
   return assemble(s);
 }
@@ -277,7 +277,7 @@ static laves_result run_limited(size_t limit, size_t *before, size_t *peak) {
   *before = laves_context_peak_bytes(s.context);
   laves_result result = laves__lattice_of_graph(s.context, &graph, &s.lattice, &error);
   if (result == LAVES_OK) result = laves__classify(&s.frame, &s.lattice, &error);
-  if (result == LAVES_OK) result = laves__snap(&s.frame, &s.lattice, &s.layer, &counts, &error);
+  if (result == LAVES_OK) result = laves__snap(&s.frame, true, &s.lattice, &s.layer, &counts, &error);
   if (result == LAVES_OK) result = laves__assemble(&s.frame, &s.lattice, &s.layer, &mesh, &error);
   *peak = laves_context_peak_bytes(s.context);
   laves_mesh_free(mesh);

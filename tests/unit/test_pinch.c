@@ -78,7 +78,7 @@ static size_t repair(stages *s, const char *name, size_t *parts) {
   assert_int_equal(laves__pinch_repair(&s->lattice, &parted, &pinches, &error), LAVES_OK);
   assert_fans(&s->lattice, &parted, name);
   if (parts) *parts = parted.count;
-  laves__free(s->context, parted.item, parted.capacity, sizeof *parted.item);
+  laves__parted_free(s->context, &parted);
   return pinches;
 }
 
