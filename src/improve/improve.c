@@ -98,10 +98,13 @@ static void measure_all(void *user, size_t begin, size_t end, int worker) {
     if (w->layer->tet[t][0] >= 0) w->layer->quality[t] = laves__layer_quality(&w->measure, w->layer, (int32_t)t);
 }
 
-/* Whether a tet is the whole of a wall: all its corners are on the surface. */
+/* Whether a tet is the whole of a wall: all its corners are on the surface, none of them at a crease. */
 static bool spans_wall(const laves__layer *layer, int32_t t) {
-  const int32_t *v = layer->tet[t];
-  return layer->depth[v[0]] + layer->depth[v[1]] + layer->depth[v[2]] + layer->depth[v[3]] == 0;
+  for (int k = 0; k < 4; k++) {
+    const int32_t v = layer->tet[t][k];
+    if (layer->depth[v] != 0 || laves__layer_hold(layer, v).kind >= LAVES__HOLD_CREASE) return false;
+  }
+  return true;
 }
 
 /* Contraction is dear, and in walls a tet thick it seldom reaches the asked window. */
