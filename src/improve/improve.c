@@ -42,6 +42,7 @@ static const double worthwhile = 0.02;      /* share of bad tets that a pass mus
 static const double thorough_below = 0.985; /* quality below which the few that remain get more patience */
 static const double far_outside = 0.75;     /* quality: about 36 to 131 degrees for the standard window */
 static const double wall_admit = 0.8;       /* quality: about 37 to 128 degrees; enough for tets that span a wall */
+static const size_t wall_count = 200;       /* bad ones; fewer get all the patience there is */
 static const double graded_crowd = 0.1;     /* what `crowd` is on a graded background, after flips */
 static const double peel_below = 0.5;       /* quality below which a tet between two surfaces is taken away, if it can be */
 static const double settle_floor = 0.2;     /* quality that bringing a vertex back to the surface may cost: about 18 degrees */
@@ -88,6 +89,7 @@ typedef struct work {
   double *stuck;    /* [tet_count] surroundings in which smoothing ended */
   double *given_up; /* [tet_count] surroundings in which the last full treatment failed */
   double admit;     /* tets below this quality are worked on */
+  bool thin;        /* tets that span a wall are good enough at wall_admit */
   int rounds;       /* of smoothing around a contraction; 0: smoothing only */
 } work;
 
@@ -107,10 +109,16 @@ static bool spans_wall(const laves__layer *layer, int32_t t) {
   return true;
 }
 
-/* Contraction is dear, and in walls a tet thick it seldom reaches the asked window. */
 static bool is_bad(const work *w, int32_t t) {
   if (w->layer->tet[t][0] < 0 || !(w->layer->quality[t] < w->admit)) return false;
-  return w->rounds == 0 || w->layer->quality[t] < wall_admit || !spans_wall(w->layer, t);
+  return !w->thin || w->layer->quality[t] < wall_admit || !spans_wall(w->layer, t);
+}
+
+/* Whether walls a tet thick are more than a place or two: contraction is dear, and there it seldom reaches the asked window. */
+static bool has_thin_walls(const work *w) {
+  size_t count = 0;
+  for (size_t t = 0; t < w->layer->tet_count; t++) count += is_bad(w, (int32_t)t) && spans_wall(w->layer, (int32_t)t);
+  return count > wall_count;
 }
 
 /* The least power of two that no size at the corners of a tet exceeds. */
@@ -341,6 +349,7 @@ static laves_result mend_tiling(work *w, bool brief, laves_error *error) {
   if (result == LAVES_OK) result = run_passes(w, rough ? 1 : SMOOTH_PASSES - 1, 1, error);
   if (result == LAVES_OK) settle_all(w, settle_floor);
   const bool crowded = is_crowded(w, crowd);
+  w->thin = has_thin_walls(w);
   w->rounds = 1;
   if (rough) w->admit = rough_admit;
   if (result == LAVES_OK) result = run_passes(w, rough ? 1 : crowded ? CROWD_PASSES : CONTRACT_PASSES, 2, error);
@@ -362,6 +371,7 @@ static laves_result mend_graded(work *w, laves_error *error) {
   w->rounds = 1;
   w->admit = far_outside;
   const bool rough = is_crowded(w, graded_crowd);
+  w->thin = has_thin_walls(w);
   if (result == LAVES_OK) result = run_passes(w, rough ? 1 : CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) peel_all(w);
   w->admit = 1;

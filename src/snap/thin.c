@@ -27,7 +27,8 @@ typedef struct thinning {
   const laves__frame *frame;
   laves__lattice *lattice;
   laves__feet *feet;
-  uint32_t *suspects; /* [record_count] bit for each site */
+  uint32_t *bent;     /* [record_count] bit for each site around which phi is far from linear */
+  uint32_t *suspects; /* [record_count] these and those beside them */
   uint32_t *turns_on; /* [record_count] sites that go ON after this round */
 } thinning;
 
@@ -75,9 +76,11 @@ static void find_suspects(void *user, size_t begin, size_t end, int worker) {
     uint32_t mask = 0;
     for (int site = 0; site < LAVES__C15_SITES; site++)
       if (is_suspect(t, (laves__site){(int32_t)i, (uint8_t)site})) mask |= UINT32_C(1) << site;
-    t->suspects[i] = mask;
+    t->bent[i] = mask;
   }
 }
+
+static bool is_bent(const thinning *t, laves__site s) { return t->bent[s.cell] >> s.site & 1; }
 
 /* Sites beside a suspect on the other side of the surface are suspects as well: from beyond a wall or gap that holds few sites,
  * phi may look linear. */
@@ -89,7 +92,7 @@ static bool is_beside_suspect(const thinning *t, laves__site s) {
   for (int k = 0; k < ring.count; k++) {
     const laves__site n = laves__ring_at(&ring, k);
     if (n.cell < 0 || t->lattice->record[n.cell].sign[n.site] == r->sign[s.site]) continue;
-    if (t->suspects[n.cell] >> n.site & 1) return true;
+    if (is_bent(t, n)) return true;
   }
   return false;
 }
@@ -98,9 +101,9 @@ static void find_company(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const thinning *t = user;
   for (size_t i = begin; i < end; i++) {
-    t->turns_on[i] = t->suspects[i];
+    t->suspects[i] = t->bent[i];
     for (int site = 0; site < LAVES__C15_SITES; site++)
-      if (is_beside_suspect(t, (laves__site){(int32_t)i, (uint8_t)site})) t->turns_on[i] |= UINT32_C(1) << site;
+      if (is_beside_suspect(t, (laves__site){(int32_t)i, (uint8_t)site})) t->suspects[i] |= UINT32_C(1) << site;
   }
 }
 
@@ -137,7 +140,7 @@ static bool passes_through(const thinning *t, laves__site s, laves__site other, 
   const double cosine = v3_dot(a.normal, b.normal);
   if (cosine > opposed) return false;
   const double scale = 0.5 * (laves__site_scale(t->lattice, s) + laves__site_scale(t->lattice, other));
-  if (side < 0 && laves__site_sign(t->lattice, s) == laves__site_sign(t->lattice, other))
+  if (side < 0 && laves__site_sign(t->lattice, s) == laves__site_sign(t->lattice, other) && is_bent(t, s) && is_bent(t, other))
     for (int i = 0; i < SAMPLES; i++)
       if (laves__lies_inside(t->frame, v3_lerp(a.at, b.at, (i + 1.0) / (SAMPLES + 1)), depth_min * scale)) return true;
   if (cosine > strictly_opposed) return false;
@@ -185,20 +188,19 @@ laves_result laves__thin_cover(const laves__frame *frame, laves__lattice *lattic
   laves_context *context = lattice->context;
   const size_t records = lattice->record_count;
   laves_result result = LAVES_OK;
-  thinning t = {frame, lattice, feet, laves__alloc(context, records, sizeof *t.suspects),
+  thinning t = {frame,
+                lattice,
+                feet,
+                laves__alloc(context, records, sizeof *t.bent),
+                laves__alloc(context, records, sizeof *t.suspects),
                 laves__alloc(context, records, sizeof *t.turns_on)};
-  if (!t.suspects || !t.turns_on) {
+  if (!t.bent || !t.suspects || !t.turns_on) {
     result = laves__fail_memory(context, error);
     goto cleanup;
   }
   if (!laves__parallel_for(context, "snap", records, 16, find_suspects, &t)) result = laves__fail_cancelled(error);
   if (result == LAVES_OK && !laves__parallel_for(context, "snap", records, 16, find_company, &t))
     result = laves__fail_cancelled(error);
-  if (result == LAVES_OK) {
-    uint32_t *const swap = t.suspects;
-    t.suspects = t.turns_on;
-    t.turns_on = swap;
-  }
   if (result == LAVES_OK) result = laves__feet_find(frame, lattice, t.suspects, feet, error);
   for (int round = 0; result == LAVES_OK && round < ROUNDS; round++) {
     if (!laves__parallel_for(context, "snap", records, 16, look_at_edges, &t))
@@ -210,5 +212,6 @@ laves_result laves__thin_cover(const laves__frame *frame, laves__lattice *lattic
 cleanup:
   laves__free(context, t.turns_on, records, sizeof *t.turns_on);
   laves__free(context, t.suspects, records, sizeof *t.suspects);
+  laves__free(context, t.bent, records, sizeof *t.bent);
   return result;
 }
