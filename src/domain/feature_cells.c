@@ -517,7 +517,9 @@ static void forget(laves__crease_search *s) {
   laves__point_grid_init(&all->piece_grid, context, piece_width);
   laves__point_grid_init(&all->site_grid, context, site_width);
   laves__point_grid_init(&s->corner_grid, context, corner_width);
-  s->lines->point_count = s->lines->fixed_count = s->weak_count = s->loose_count = 0;
+  s->lines->point_count = s->first_point;
+  s->lines->fixed_count = s->first_fixed;
+  s->weak_count = s->loose_count = 0;
   s->cell_count = 0;
   s->work = s->fraction = 0;
   s->crowded = false;

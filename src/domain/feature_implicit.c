@@ -108,14 +108,16 @@ static bool number_patches(laves__implicit_features *all, laves_context *context
   return made;
 }
 
-static bool give_segments(const laves__implicit_features *all, laves__feature_lines *lines) {
+static bool give_segments(const laves__crease_search *s) {
+  const laves__implicit_features *all = s->all;
+  laves__feature_lines *lines = s->lines;
   for (size_t i = 0; i < all->piece_grid.count; i++) {
     const laves__crease_piece *c = &all->piece[i];
     const laves__feature_segment segment = {
         .ends = {c->points[0], c->points[1]}, .patch = {all->patch[c->branch[0]], all->patch[c->branch[1]]}, .angle = c->angle};
     if (!laves__feature_lines_add_segment(lines, &segment)) return false;
   }
-  for (size_t i = 0; i < lines->fixed_count; i++) lines->fixed[i].patch = all->patch[lines->fixed[i].patch];
+  for (size_t i = s->first_fixed; i < lines->fixed_count; i++) lines->fixed[i].patch = all->patch[lines->fixed[i].patch];
   return true;
 }
 
@@ -340,6 +342,8 @@ laves_result laves__features_of_implicit(const laves__implicit_solid *solid, con
                             .context = context,
                             .wish = wish,
                             .lines = lines,
+                            .first_point = lines->point_count,
+                            .first_fixed = lines->fixed_count,
                             .probe = probe_part * solid->diagonal,
                             .near_box = box3_empty(),
                             .wide_box = box3_empty(),
@@ -351,7 +355,7 @@ laves_result laves__features_of_implicit(const laves__implicit_solid *solid, con
   laves__free(context, s.corner_point, s.corner_capacity, sizeof *s.corner_point);
   laves__point_grid_free(&s.corner_grid);
   int32_t patch_count = 0;
-  s.out_of_memory = s.out_of_memory || !number_patches(all, context, &patch_count) || !give_segments(all, lines);
+  s.out_of_memory = s.out_of_memory || !number_patches(all, context, &patch_count) || !give_segments(&s);
   const laves_result result = outcome_of(&s, error);
   if (result != LAVES_OK || patch_count == 0) {
     free_features(context, all);

@@ -86,9 +86,10 @@ typedef struct laves__crease_search {
   laves_context *context;
   const laves__feature_wish *wish;
   laves__feature_lines *lines;
-  double probe;   /* the distance at which sides are looked at */
-  double step;    /* longest step along a crease */
-  double sagitta; /* by how much a chord may miss its crease */
+  size_t first_point, first_fixed; /* of the lines: what was there before is others' */
+  double probe;                    /* the distance at which sides are looked at */
+  double step;                     /* longest step along a crease */
+  double sagitta;                  /* by how much a chord may miss its crease */
   laves__point_grid corner_grid;
   uint32_t *corner_point; /* of each corner */
   size_t corner_capacity;

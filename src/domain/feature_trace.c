@@ -15,8 +15,9 @@
 #include "domain/elementary.h"
 #include "domain/feature_implicit.h"
 
-/* All steps of all creases; far more than any mesh could follow. */
-enum { PIECE_LIMIT = 2000000 };
+/* All steps of all creases (190 MB); more than a mesh of a hundred million tets could follow. And so many steps must lead a
+ * crease further than one size: what takes more writhes below the size. */
+enum { PIECE_LIMIT = 1000000, STEPS_PER_SIZE = 512 };
 /* Around an end so many functions are looked at, and so many times in a row may a crease go on with another one. */
 enum { RIVAL_LIMIT = 16, CHANGE_LIMIT = 64 };
 /* Cosine of the angle by which the tangent may turn in a step. */
@@ -408,12 +409,28 @@ static void note_weak(laves__crease_search *s, const spot *a) {
   s->weak[s->weak_count++] = (laves__weak_border){a->p, {a->branch[0], a->branch[1]}};
 }
 
+/* Bounds hold the surface; where they were cut short, creases may lead out of them. */
+static bool has_left(const laves__crease_search *s, laves__vec3 p) {
+  const laves__box3 box = s->all->solid.bounds;
+  for (int i = 0; i < 3; i++)
+    if (!(fabs((&p.x)[i] - 0.5 * ((&box.lower.x)[i] + (&box.upper.x)[i])) <
+          0.5 * ((&box.upper.x)[i] - (&box.lower.x)[i]) + s->all->size))
+      return true;
+  return false;
+}
+
 /* True when the crease closed. */
 static bool follow(laves__crease_search *s, const spot *start, double way) {
   spot here = *start, there;
   double h = s->step;
   int steps = 0, changes = 0;
+  laves__vec3 milestone = start->p;
   while (laves__search_goes_on(s) && s->all->piece_grid.count < PIECE_LIMIT) {
+    if (has_left(s, here.p)) return false;
+    if (steps % STEPS_PER_SIZE == STEPS_PER_SIZE - 1) {
+      if (v3_distance(here.p, milestone) < s->all->size) return false;
+      milestone = here.p;
+    }
     if (steps > 2 && close_ring(s, &here, way, h, start)) return true;
     outcome o = advance(s, &here, way, h, &there);
     if ((o == TOO_LONG && h > least_step * s->probe) || (o == FADED && h > fade_step * s->step)) {

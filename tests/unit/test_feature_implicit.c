@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "domain/features.h"
+#include "domain/feature_implicit.h"
 #include "fixtures/assert_close.h"
 #include "fixtures/folders.h"
 #include "fixtures/random_expression.h"
@@ -377,7 +377,7 @@ static void write_solid(char *text, size_t size, uint64_t *seed, int depth) {
 static void random_solids_are_survived(void **state) {
   (void)state;
   int solid_count = 0;
-  for (uint64_t k = 1; k <= 60; k++) {
+  for (uint64_t k = 1; k <= 40; k++) {
     char text[4096] = "";
     uint64_t seed = k;
     write_solid(text, sizeof text, &seed, 4);
@@ -403,7 +403,45 @@ static void random_solids_are_survived(void **state) {
     }
     drop(f);
   }
-  assert_true(solid_count > 30);
+  assert_true(solid_count > 20);
+}
+
+/* Formulas with jumps, poles and slopes without bound. */
+static void random_formulas_are_survived(void **state) {
+  (void)state;
+  size_t segments = 0;
+  for (uint64_t k = 1; k <= 80; k++) {
+    laves_context *context = laves_context_create(NULL);
+    laves__expression e;
+    laves__tape tape;
+    laves_error error;
+    uint64_t seed = k;
+    laves__expression_init(&e, context);
+    const laves__node node = random_expression(&e, &seed, 20, k % 2 == 0);
+    assert_int_equal(laves__tape_build(&e, node, NULL, &tape, &error), LAVES_OK);
+    const laves__box3 bounds = {v3(-3, -3, -3), v3(3, 3, 3)};
+    const laves__implicit_solid solid = {.tape = &tape, .bounds = bounds, .diagonal = box3_diagonal(bounds)};
+    const laves__feature_wish wish = {.angle = 30, .size = 0.6};
+    laves__features features = {.context = context};
+    laves__feature_lines lines = {.context = context};
+    assert_int_equal(laves__features_of_implicit(&solid, &wish, &features, &lines, &error), LAVES_OK);
+    segments += lines.segment_count;
+    for (int i = 0; i < 200 && features.self; i++) {
+      const laves__vec3 p = random_point(&seed, 3);
+      const int32_t patch = features.patch_at(features.self, p, LAVES__NO_HINT);
+      assert_in_range(patch, 0, features.patch_count - 1);
+      uint32_t hint = (uint32_t)i;
+      laves__vec3 foot, normal;
+      if (features.project_patch(features.self, patch, p, 1, &hint, &foot, &normal)) assert_true(v3_distance(foot, p) <= 1);
+    }
+    if (features.free_self) features.free_self(context, features.self);
+    laves__feature_lines_free(&lines);
+    laves__tape_free(context, &tape);
+    laves__expression_free(&e);
+    assert_int_equal(laves_context_bytes(context), 0);
+    laves_context_free(context);
+  }
+  assert_true(segments > 1000);
 }
 
 /* Lets everything go on but the search. */
@@ -476,6 +514,7 @@ int main(void) {
       cmocka_unit_test(runs_are_equal),
       cmocka_unit_test(leaves_meet_the_rest),
       cmocka_unit_test(random_solids_are_survived),
+      cmocka_unit_test(random_formulas_are_survived),
       cmocka_unit_test(searches_can_be_cancelled),
       cmocka_unit_test(memory_may_run_short),
   };
