@@ -157,7 +157,10 @@ static laves_result stuff(run *r) {
   begin_stage(r);
   laves__layer_free(&r->layer);
   const laves_result result = laves__stuff(&r->frame, r->guarantee, &r->lattice, &r->layer, &r->stuffed, r->error);
-  if (r->stuffed.left == 0) memset(&r->counts, 0, sizeof r->counts); /* they tell of a boundary that is gone */
+  if (r->stuffed.left == 0) { /* they tell of a boundary that is gone, but for the places, which are as thin as before */
+    r->counts.pinches = 0;
+    r->counts.off_surface = 0;
+  }
   r->counts.snapped = r->stuffed.left;
   r->counts.specks = r->stuffed.specks;
   end_stage(r, "stuff");
@@ -384,8 +387,10 @@ static laves_result judge_thin(run *r, const laves_mesh *mesh) {
     warn(r, "%zu parts of a few tetrahedra, beyond places thinner than the size, were dropped", r->counts.specks);
   begin_stage(r);
   const laves_result result = laves__find_losses(&r->frame, r->domain, mesh, report, text, sizeof text, r->error);
-  end_stage(r, "topology");
-  if (text[0]) warn(r, "%s", text);
+  if (text[0]) { /* else it took no time */
+    end_stage(r, "topology");
+    warn(r, "%s", text);
+  }
   return result;
 }
 
