@@ -51,7 +51,10 @@ laves_result laves__stuff_zone(laves__run *r) {
   laves__stage_begin(r);
   laves__layer_free(&r->layer);
   const laves_result result = laves__stuff(&r->frame, r->guarantee, &r->lattice, &r->layer, &r->stuffed, r->error);
-  if (r->stuffed.left == 0) memset(&r->counts, 0, sizeof r->counts); /* they tell of a boundary that is gone */
+  if (r->stuffed.left == 0) { /* they tell of a boundary that is gone, but for the places, which are as thin as before */
+    r->counts.pinches = 0;
+    r->counts.off_surface = 0;
+  }
   r->counts.snapped = r->stuffed.left;
   r->counts.specks = r->stuffed.specks;
   laves__stage_end(r, "stuff");

@@ -66,8 +66,10 @@ static laves_result judge_thin(laves__run *r, const laves_mesh *mesh) {
     laves__warn(r, "%zu parts of a few tetrahedra, beyond places thinner than the size, were dropped", r->counts.specks);
   laves__stage_begin(r);
   const laves_result result = laves__find_losses(&r->frame, r->domain, mesh, report, text, sizeof text, r->error);
-  laves__stage_end(r, "topology");
-  if (text[0]) laves__warn(r, "%s", text);
+  if (text[0]) { /* else it took no time */
+    laves__stage_end(r, "topology");
+    laves__warn(r, "%s", text);
+  }
   return result;
 }
 

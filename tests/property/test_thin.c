@@ -89,7 +89,7 @@ static void gaps_stay_open(void **state) {
   laves_context_free(context);
 }
 
-/* The meshes of a plate with a wall of 0.3 sizes lose something, and say what and where. */
+/* A gap of 0.3 sizes is below what is promised: where a mesh closes it, the report says so, and where. */
 static void what_is_lost_is_named(void **state) {
   (void)state;
   laves_context *context = laves_context_create(NULL);
@@ -122,7 +122,7 @@ static void what_is_lost_is_named(void **state) {
   laves_context_free(context);
 }
 
-/* Without the rules for thin parts a plate of half a size is not what it was; with them it is. */
+/* Without the rules for thin parts a plate of half a size is not one plate. */
 static void the_rules_can_be_left_out(void **state) {
   (void)state;
   laves_context *context = laves_context_create(NULL);

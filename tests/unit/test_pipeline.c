@@ -110,8 +110,9 @@ static void walls_and_edges_are_warned_of(void **state) {
   laves_options options = options_of_size(0.11);
   options.improve = false;
   laves_report report;
-  laves_mesh *mesh = mesh_of_expression(context, "sphere(1) - sphere(0.94)", &options, &report);
+  laves_mesh *mesh = mesh_of_expression(context, "sphere(1) - sphere(0.955)", &options, &report);
   assert_true(report.pinches > 0);
+  assert_true(report.lost_count > 0 && report.lost[0].kind == LAVES_THIN_WALL && fabs(report.lost[0].thickness - 0.045) < 0.003);
   assert_true(report.warning_count > 0);
   assert_non_null(strstr(report.warnings[0], "thinner than the size"));
   laves_mesh_free(mesh);
