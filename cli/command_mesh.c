@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "features.h"
 #include "input.h"
 #include "output.h"
 #include "session.h"
@@ -20,7 +21,8 @@ static const double volume_slack = 0.1;
 typedef struct mesh_run {
   input in;
   outputs plan;
-  laves_sizing *sizing; /* NULL: none */
+  laves_sizing *sizing;     /* NULL: none */
+  laves_features *features; /* NULL: none */
   laves_options options;
   laves_mesh *mesh;
   laves_report report;
@@ -29,7 +31,7 @@ typedef struct mesh_run {
   double certify_seconds;
 } mesh_run;
 
-static laves_options make_options(const settings *given, const laves_sizing *sizing) {
+static laves_options make_options(const settings *given, const laves_sizing *sizing, const laves_features *features) {
   laves_options options = laves_options_default();
   options.size = given->size;
   options.relative_size = given->relative_size;
@@ -46,6 +48,7 @@ static laves_options make_options(const settings *given, const laves_sizing *siz
   }
   if (given->volume_length >= 0) options.volume_length = given->volume_length;
   sizing_options(given, sizing, &options);
+  features_options(given, features, &options);
   return options;
 }
 
@@ -135,10 +138,11 @@ static laves_result mesh_steps(session *run, mesh_run *all) {
   laves_result result = outputs_plan(run, fallback, given->input, &all->plan);
   if (result == LAVES_OK) result = outputs_plan_certificate(run, given->input, &all->plan);
   if (result == LAVES_OK) result = sizing_open(run, &all->sizing);
+  if (result == LAVES_OK) result = features_open(run, &all->features);
   if (result == LAVES_OK) result = input_open(run, given->input, &all->in);
   if (result != LAVES_OK) return result;
 
-  all->options = make_options(given, all->sizing);
+  all->options = make_options(given, all->sizing, all->features);
   result = laves_generate(run->context, all->in.domain, &all->options, &all->mesh, &all->report, &run->error);
   result = session_settle(run, result);
   if (result != LAVES_OK && result != LAVES_TARGET_MISSED) return result;
@@ -204,6 +208,7 @@ static void write_options(json *out, const settings *given, const laves_options 
   json_numbers(out, "window", (const double[2]){options->min_dihedral, options->max_dihedral}, 2);
   json_number(out, "volume_length", options->volume_length);
   sizing_write_json(out, given);
+  features_write_json(out, given);
   json_close(out);
 }
 
@@ -254,6 +259,7 @@ int command_mesh(const settings *given) {
   session_write_json(&run, &result, mesh_json, &all);
   laves_mesh_free(all.mesh);
   laves_sizing_free(all.sizing);
+  laves_features_free(all.features);
   laves_domain_free(all.in.domain);
   return session_close(&run, result);
 }

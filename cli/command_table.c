@@ -51,6 +51,7 @@ const size_t command_count = sizeof commands / sizeof commands[0];
 
 #define IN_SIZE "Size (at most one; none: about 50 thousand tetrahedra)"
 #define IN_SIZING "Sizes that vary (docs/sizing.md); the size above is the largest, and the least asked for counts"
+#define IN_FEATURES "Features (docs/features.md)"
 #define IN_TILING "Tiling"
 #define IN_SHAPE "Shape"
 #define IN_CHECK "Check"
@@ -97,6 +98,18 @@ const option option_rows[] = {
      MEMBER(min_size), 0, "no element is asked to be smaller, whatever asks for it"},
     {"grading", 0, MESH | INFO, IN_SIZING, OPTION_REAL, "G", "size per distance", false, 0.05, 1, "0.3", MEMBER(grading), 0,
      "how fast the size may grow from place to place"},
+
+    {"features", 0, MESH | INFO, IN_FEATURES, OPTION_WORDS, "WHAT", NULL, false, 0, TEXTS_CAPACITY, "auto", MEMBER(features), 0,
+     "auto: sharp edges and corners of the solid are kept as edges and vertices of the mesh; none: they are not looked for; "
+     "a file: "
+     "its points and lines are kept, and what is found besides, unless none is given too (text, OBJ, Gmsh, VTK: "
+     "docs/feature-files.md); repeatable"},
+    {"feature-angle", 0, MESH | INFO, IN_FEATURES, OPTION_REAL, "DEG", "degrees", false, 1, 179, "40", MEMBER(feature_angle), 0,
+     "how much the surface's normal must turn at an edge that is sharp"},
+    {"feature-tags", 0, MESH | INFO, IN_FEATURES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(feature_tags), 0,
+     "keep edges between parts of the surface with different tags too, also with --features none"},
+    {"no-keep-thin", 0, MESH | INFO, IN_FEATURES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(no_keep_thin), 0,
+     "let walls and gaps thinner than about the size go as they go; else those down to half the size are kept, or named"},
 
     {"align", 0, MESH, IN_SHAPE, OPTION_ALIGNMENT, "HOW", NULL, false, 0, 0, "none", MEMBER(alignment), 0,
      "how the lattice lies: none, pca (principal axes), an axis and an angle in degrees as x,y,z,angle, or a rotation matrix as "

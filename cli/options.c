@@ -363,6 +363,7 @@ options_outcome options_parse(const command *about, int count, char **words, set
                       .volume_length = -1,
                       .guarantee = 14.4,
                       .grading = 0.3,
+                      .feature_angle = 40,
                       .compress = 1,
                       .list = 5,
                       .color = "class",

@@ -50,6 +50,9 @@ typedef struct settings {
   double grading, min_size, max_size; /* sizes 0: not given */
   double curvature_elements, thickness_elements, feature_elements, max_distance, interior_growth;
   option_texts size_fields, refinements;
+  option_texts features;
+  double feature_angle; /* degrees */
+  bool feature_tags, no_keep_thin;
   const char *cut; /* NULL: not given */
   const char *color, *view, *up, *pixels, *background;
   double lines; /* pixels */
