@@ -5,6 +5,7 @@
 
 #include "command.h"
 #include "estimate.h"
+#include "features.h"
 #include "input.h"
 #include "output.h"
 #include "session.h"
@@ -25,7 +26,8 @@ typedef struct thin_list {
 
 typedef struct info_run {
   input in;
-  laves_sizing *sizing; /* NULL: none */
+  laves_sizing *sizing;     /* NULL: none */
+  laves_features *features; /* NULL: none */
   estimate cost;
   bool has_cost;
   thin_list walls, gaps;
@@ -93,10 +95,11 @@ static void say_cost(const info_run *all) {
 static laves_result info_steps(session *run, info_run *all) {
   laves_result result = outputs_check_json(run, run->given->input);
   if (result == LAVES_OK) result = sizing_open(run, &all->sizing);
+  if (result == LAVES_OK) result = features_open(run, &all->features);
   if (result == LAVES_OK) result = input_open(run, run->given->input, &all->in);
   if (result != LAVES_OK) return result;
   all->has_cost = estimate_make(run, &all->in, &all->cost);
-  if (all->has_cost) result = estimate_varying(run, &all->in, all->sizing, &all->cost);
+  if (all->has_cost) result = estimate_varying(run, &all->in, all->sizing, all->features, &all->cost);
   if (result != LAVES_OK) return result;
   const double start = progress_now();
   all->walls.count = laves_domain_thin_places(all->in.domain, all->walls.place, THIN_CAPACITY);
@@ -150,6 +153,7 @@ int command_info(const settings *given) {
   laves_result result = info_steps(&run, &all);
   session_write_json(&run, &result, info_json, &all);
   laves_sizing_free(all.sizing);
+  laves_features_free(all.features);
   laves_domain_free(all.in.domain);
   return session_close(&run, result);
 }

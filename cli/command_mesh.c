@@ -5,6 +5,7 @@
 
 #include "command.h"
 #include "feature_report.h"
+#include "features.h"
 #include "groups.h"
 #include "input.h"
 #include "output.h"
@@ -22,7 +23,8 @@ static const double volume_slack = 0.1;
 typedef struct mesh_run {
   input in;
   outputs plan;
-  laves_sizing *sizing; /* NULL: none */
+  laves_sizing *sizing;     /* NULL: none */
+  laves_features *features; /* NULL: none */
   laves_options options;
   laves_mesh *mesh;
   laves_report report;
@@ -31,7 +33,7 @@ typedef struct mesh_run {
   double certify_seconds;
 } mesh_run;
 
-static laves_options make_options(const settings *given, const laves_sizing *sizing) {
+static laves_options make_options(const settings *given, const laves_sizing *sizing, const laves_features *features) {
   laves_options options = laves_options_default();
   options.size = given->size;
   options.relative_size = given->relative_size;
@@ -44,13 +46,13 @@ static laves_options make_options(const settings *given, const laves_sizing *siz
   options.improve = !given->no_improve;
   options.regions = given->regions;
   options.face_sources = given->face_sources;
-  options.keep_thin = !given->no_keep_thin;
   if (given->window.given) {
     options.min_dihedral = given->window.values[0];
     options.max_dihedral = given->window.values[1];
   }
   if (given->volume_length >= 0) options.volume_length = given->volume_length;
   sizing_options(given, sizing, &options);
+  features_options(given, features, &options);
   return options;
 }
 
@@ -140,10 +142,11 @@ static laves_result mesh_steps(session *run, mesh_run *all) {
   laves_result result = outputs_plan(run, fallback, given->input, &all->plan);
   if (result == LAVES_OK) result = outputs_plan_certificate(run, given->input, &all->plan);
   if (result == LAVES_OK) result = sizing_open(run, &all->sizing);
+  if (result == LAVES_OK) result = features_open(run, &all->features);
   if (result == LAVES_OK) result = input_open(run, given->input, &all->in);
   if (result != LAVES_OK) return result;
 
-  all->options = make_options(given, all->sizing);
+  all->options = make_options(given, all->sizing, all->features);
   result = laves_generate(run->context, all->in.domain, &all->options, &all->mesh, &all->report, &run->error);
   result = session_settle(run, result);
   if (result != LAVES_OK && result != LAVES_TARGET_MISSED) return result;
@@ -206,12 +209,12 @@ static void write_options(json *out, const settings *given, const laves_options 
   json_text(out, "method", methods[options->method]);
   json_number(out, "guarantee", options->guarantee);
   json_boolean(out, "improve", options->improve);
-  json_boolean(out, "keep_thin", options->keep_thin);
   json_numbers(out, "window", (const double[2]){options->min_dihedral, options->max_dihedral}, 2);
   json_number(out, "volume_length", options->volume_length);
   json_text(out, "regions", options->regions == LAVES_REGIONS_PARTS ? "parts" : "none");
   json_boolean(out, "face_sources", options->face_sources);
   sizing_write_json(out, given);
+  features_write_json(out, given);
   json_close(out);
 }
 
@@ -301,6 +304,7 @@ int command_mesh(const settings *given) {
   session_write_json(&run, &result, mesh_json, &all);
   laves_mesh_free(all.mesh);
   laves_sizing_free(all.sizing);
+  laves_features_free(all.features);
   laves_domain_free(all.in.domain);
   return session_close(&run, result);
 }

@@ -52,6 +52,7 @@ const size_t command_count = sizeof commands / sizeof commands[0];
 
 #define IN_SIZE "Size (at most one; none: about 50 thousand tetrahedra)"
 #define IN_SIZING "Sizes that vary (docs/sizing.md); the size above is the largest, and the least asked for counts"
+#define IN_FEATURES "Features (docs/features.md)"
 #define IN_TILING "Tiling"
 #define IN_SHAPE "Shape"
 #define IN_CHECK "Check"
@@ -99,6 +100,18 @@ const option option_rows[] = {
     {"grading", 0, MESH | INFO, IN_SIZING, OPTION_REAL, "G", "size per distance", false, 0.05, 1, "0.3", MEMBER(grading), 0,
      "how fast the size may grow from place to place"},
 
+    {"features", 0, MESH | INFO, IN_FEATURES, OPTION_WORDS, "WHAT", NULL, false, 0, TEXTS_CAPACITY, "auto", MEMBER(features), 0,
+     "auto: sharp edges and corners of the solid are kept as edges and vertices of the mesh; none: they are not looked for; "
+     "a file: "
+     "its points and lines are kept, and what is found besides, unless none is given too (text, OBJ, Gmsh, VTK: "
+     "docs/feature-files.md); repeatable"},
+    {"feature-angle", 0, MESH | INFO, IN_FEATURES, OPTION_REAL, "DEG", "degrees", false, 1, 179, "40", MEMBER(feature_angle), 0,
+     "how much the surface's normal must turn at an edge that is sharp"},
+    {"feature-tags", 0, MESH | INFO, IN_FEATURES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(feature_tags), 0,
+     "keep edges between parts of the surface with different tags too, also with --features none"},
+    {"no-keep-thin", 0, MESH | INFO, IN_FEATURES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(no_keep_thin), 0,
+     "let walls and gaps thinner than about the size go as they go; else those down to half the size are kept, or named"},
+
     {"align", 0, MESH, IN_SHAPE, OPTION_ALIGNMENT, "HOW", NULL, false, 0, 0, "none", MEMBER(alignment), 0,
      "how the lattice lies: none, pca (principal axes), an axis and an angle in degrees as x,y,z,angle, or a rotation matrix as "
      "9 numbers row by row"},
@@ -112,8 +125,6 @@ const option option_rows[] = {
      "promise, as with --method snap"},
     {"no-improve", 0, MESH, IN_SHAPE, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(no_improve), 0,
      "leave the boundary layer as it was made"},
-    {"no-keep-thin", 0, MESH, IN_SHAPE, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(no_keep_thin), 0,
-     "nothing is done for walls and gaps thinner than the size, which are kept down to half the size otherwise"},
     {"window", 0, MESH, IN_SHAPE, OPTION_WINDOW, "LO,HI", "degrees", false, 0, 180, "40,125", MEMBER(window), 0,
      "asked range of every dihedral angle (LO 0..60, HI 80..180); exit code 3 when it or --volume-length is missed"},
     {"volume-length", 0, MESH, IN_SHAPE, OPTION_REAL, "Q", NULL, false, 0, 0.8, "0.6", MEMBER(volume_length), 0,

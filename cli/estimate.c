@@ -12,6 +12,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "features.h"
 #include "sizing.h"
 
 /* Tets and vertices per V/h^3: counts of one cell over its side in mean edges, cubed. */
@@ -135,7 +136,8 @@ bool estimate_make(session *run, const input *in, estimate *result) {
   return true;
 }
 
-laves_result estimate_varying(session *run, const input *in, const laves_sizing *sizing, estimate *result) {
+laves_result estimate_varying(session *run, const input *in, const laves_sizing *sizing, const laves_features *features,
+                              estimate *result) {
   if (!sizing_is_asked(run->given)) return LAVES_OK;
   laves_options options = laves_options_default();
   laves_expectation expected;
@@ -144,6 +146,7 @@ laves_result estimate_varying(session *run, const input *in, const laves_sizing 
   options.tet_target = run->given->tets;
   options.vertex_target = run->given->vertices;
   sizing_options(run->given, sizing, &options);
+  features_options(run->given, features, &options);
   const laves_result outcome = laves_estimate(run->context, in->domain, &options, &expected, &run->error);
   if (outcome != LAVES_OK) return session_settle(run, outcome);
   result->size = expected.size;

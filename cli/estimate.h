@@ -17,7 +17,8 @@ typedef struct estimate {
 bool estimate_make(session *run, const input *in, estimate *result);
 
 /* Where sizes vary, what the library expects in the place of counts and costs. */
-laves_result estimate_varying(session *run, const input *in, const laves_sizing *sizing, estimate *result);
+laves_result estimate_varying(session *run, const input *in, const laves_sizing *sizing, const laves_features *features,
+                              estimate *result);
 
 void estimate_write_json(json *out, const estimate *result);
 

@@ -38,13 +38,12 @@ typedef struct settings {
   double size, relative_size; /* 0: not given */
   int64_t tets, vertices;     /* 0: not given */
   option_alignment alignment;
-  bool no_improve, no_keep_thin, ascii, quiet, verbose;
+  bool no_improve, ascii, quiet, verbose;
   bool face_sources;
   laves_regions regions;
   option_numbers window; /* lowest, highest dihedral angle */
   double volume_length;  /* negative: not given */
   bool check_features;
-  double feature_angle; /* degrees */
   laves_method method;
   double guarantee; /* degrees */
   laves_format format;
@@ -54,6 +53,9 @@ typedef struct settings {
   double grading, min_size, max_size; /* sizes 0: not given */
   double curvature_elements, thickness_elements, feature_elements, max_distance, interior_growth;
   option_texts size_fields, refinements;
+  option_texts features;
+  double feature_angle; /* degrees */
+  bool feature_tags, no_keep_thin;
   const char *cut; /* NULL: not given */
   const char *color, *view, *up, *pixels, *background;
   double lines, creases; /* pixels */

@@ -8,14 +8,16 @@
 enum { LAVES__CERTIFICATE_SCHEMA = 1 };
 
 typedef enum laves__member_kind {
-  LAVES__MEMBER_TEXT,    /* char[count], with its NUL */
-  LAVES__MEMBER_COUNT,   /* size_t[count] */
-  LAVES__MEMBER_LATER,   /* size_t; null or, in certificates older than it, missing: SIZE_MAX, not known */
-  LAVES__MEMBER_INTEGER, /* int64_t */
-  LAVES__MEMBER_NUMBER,  /* double[count]; null: NAN */
-  LAVES__MEMBER_FLAG,    /* bool */
-  LAVES__MEMBER_ALIGN,   /* laves_align, by name */
-  LAVES__MEMBER_METHOD,  /* laves_method, by name */
+  LAVES__MEMBER_TEXT,         /* char[count], with its NUL */
+  LAVES__MEMBER_COUNT,        /* size_t[count] */
+  LAVES__MEMBER_LATER,        /* size_t; null or, in certificates older than it, missing: SIZE_MAX, not known */
+  LAVES__MEMBER_INTEGER,      /* int64_t */
+  LAVES__MEMBER_NUMBER,       /* double[count]; null: NAN */
+  LAVES__MEMBER_FLAG,         /* bool */
+  LAVES__MEMBER_LATER_NUMBER, /* double; in certificates older than it missing: 0 */
+  LAVES__MEMBER_LATER_FLAG,   /* bool; the same: false */
+  LAVES__MEMBER_ALIGN,        /* laves_align, by name */
+  LAVES__MEMBER_METHOD,       /* laves_method, by name */
 } laves__member_kind;
 
 /* How a stated member is held against a recomputed one. */

@@ -5,6 +5,8 @@
 #include "io/scan.h"
 #include "mesh/mesh.h"
 
+struct laves__line_list;
+
 /* Numbers that a file holds beside its mesh, such as sizes, for readers that are asked for them. */
 typedef struct laves__mesh_values {
   bool wanted;
@@ -31,8 +33,9 @@ typedef struct laves__mesh_input {
   size_t face_element_capacity;
   laves__group *groups;
   size_t group_count, group_capacity;
-  laves__mesh_values values; /* read by VTU, Gmsh and .pos only */
-  bool higher_order;         /* elements had more nodes than corners: vertices that are no corner are dropped */
+  laves__mesh_values values;      /* read by VTU, Gmsh and .pos only */
+  struct laves__line_list *lines; /* point and line elements, by VTU and Gmsh only; NULL: they are passed over */
+  bool higher_order;              /* elements had more nodes than corners: vertices that are no corner are dropped */
 } laves__mesh_input;
 
 /* The adders return false when memory is short. Corners count from 0 and are checked at the end. */

@@ -93,6 +93,12 @@ static bool get_value(const json_t *value, const laves__member *member, void *to
     case LAVES__MEMBER_NUMBER:
       for (size_t i = 0; i < member->count && right; i++) right = get_number(item_of(value, i, member->count), (double *)to + i);
       return right;
+    case LAVES__MEMBER_LATER_NUMBER:
+      *(double *)to = json_number_value(value); /* 0 for null */
+      return json_is_number(value) || json_is_null(value);
+    case LAVES__MEMBER_LATER_FLAG:
+      *(bool *)to = json_is_true(value);
+      return json_is_boolean(value) || json_is_null(value);
     case LAVES__MEMBER_FLAG:
       *(bool *)to = json_is_true(value);
       return json_is_boolean(value);
@@ -120,8 +126,12 @@ static const char *need_of(const laves__member *member) {
       return "must be a whole number";
     case LAVES__MEMBER_NUMBER:
       return member->count == 1 ? "must be a number or null" : "must be an array of numbers, of the right length";
+    case LAVES__MEMBER_LATER_NUMBER:
+      return "must be a number or null";
     case LAVES__MEMBER_FLAG:
       return "must be true or false";
+    case LAVES__MEMBER_LATER_FLAG:
+      return "must be true, false or null";
     default:
       return "must be one of the names in docs/certificate.md";
   }
@@ -129,12 +139,18 @@ static const char *need_of(const laves__member *member) {
 
 /* ---- groups ---- */
 
+/* Members that were added after the first certificates. */
+static bool may_be_missing(const laves__member *member) {
+  return member->kind == LAVES__MEMBER_LATER || member->kind == LAVES__MEMBER_LATER_NUMBER ||
+         member->kind == LAVES__MEMBER_LATER_FLAG;
+}
+
 static laves_result read_members(const reader *r, const char *group, const json_t *object) {
   for (size_t i = 0; i < laves__certificate_member_count; i++) {
     const laves__member *member = &laves__certificate_members[i];
     if (strcmp(member->group, group) != 0) continue;
     const json_t *value = json_object_get(object, member->name);
-    if (!value && member->kind == LAVES__MEMBER_LATER) value = json_null();
+    if (!value && may_be_missing(member)) value = json_null();
     if (!value) return fail_member(r, group, member->name, "is missing");
     if (!get_value(value, member, (char *)r->certificate + member->offset))
       return fail_member(r, group, member->name, need_of(member));

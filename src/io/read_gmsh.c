@@ -4,16 +4,18 @@
  * order (but for elements in 2.2), so one function reads each section through next_int, next_size and next_double. Nodes
  * have numbers of their own, which are mapped to indices at the end: directly when they are consecutive, else by a sorted
  * table. Tets take their physical group as region and triangles as tag, or the number of their entity where they have none.
+ * Point and line elements are kept where the caller asks for them; a curved line goes by its nodes.
  * Where the caller asks for values, the places of all views of scalars are noted and the wanted one is read at the end.
  * Source: Gmsh reference manual, "MSH file format" and "MSH file format version 2 (Legacy)". */
 #include <stdlib.h>
 #include <string.h>
 
 #include "io/binary.h"
+#include "io/line_list.h"
 #include "io/mesh_input.h"
 #include "io/scan.h"
 
-enum { TYPE_MAX = 93, NODES_MAX = 125, TAGS_MAX = 1000 };
+enum { POINT_TYPE = 15, TYPE_MAX = 93, NODES_MAX = 125, TAGS_MAX = 1000 };
 
 /* Nodes of each element type, 0: not known. */
 static const uint8_t type_nodes[TYPE_MAX + 1] = {
@@ -23,6 +25,7 @@ static const uint8_t type_nodes[TYPE_MAX + 1] = {
 
 static bool is_tet(int64_t type) { return type == 4 || type == 11 || (type >= 29 && type <= 31); }
 static bool is_quad(int64_t type) { return type == 3 || type == 10 || type == 16; }
+static bool is_line(int64_t type) { return type == 1 || type == 8 || (type >= 26 && type <= 28); }
 static bool is_triangle(int64_t type) { return type == 2 || type == 9 || (type >= 20 && type <= 25); }
 
 typedef struct numbered {
@@ -55,6 +58,9 @@ typedef struct reader {
   int64_t *tet_nodes, *face_nodes;
   size_t tet_node_count, tet_node_capacity, face_node_count, face_node_capacity;
   size_t surface_element_count; /* where polygons are wanted */
+  /* The same where points and lines are wanted, beside input->lines. */
+  int64_t *single_nodes, *line_nodes;
+  size_t single_node_count, single_node_capacity, line_node_count, line_node_capacity;
   /* Where values are wanted: the views of scalars, and number -> index of tets. */
   view *views;
   laves__word *view_names;
@@ -315,6 +321,26 @@ static laves_result add_polygon(reader *r, int32_t group, const int64_t *nodes, 
   return enough ? LAVES_OK : laves__fail_memory(r->input->context, error);
 }
 
+static bool add_line_node(reader *r, const int64_t *node) {
+  return keep_nodes(r, &r->line_nodes, &r->line_node_count, &r->line_node_capacity, node, 1) &&
+         laves__line_list_add_node(r->input->lines, 0);
+}
+
+/* Pieces of two nodes each, which are joined like all others. The ends come first among the nodes of a line element, then what
+ * lies between them in order. */
+static bool add_line(reader *r, const int64_t *nodes, int count) {
+  for (int i = 1; i < count; i++) {
+    const int from = i == 1 ? 0 : i, to = i == count - 1 ? 1 : i + 1;
+    if (!add_line_node(r, &nodes[from]) || !add_line_node(r, &nodes[to]) || !laves__line_list_end(r->input->lines)) return false;
+  }
+  return true;
+}
+
+static bool add_single(reader *r, const int64_t *nodes) {
+  return keep_nodes(r, &r->single_nodes, &r->single_node_count, &r->single_node_capacity, nodes, 1) &&
+         laves__line_list_add_single(r->input->lines, 0);
+}
+
 static laves_result add_element(reader *r, int64_t number, int64_t type, int32_t group, const int64_t *nodes,
                                 laves_error *error) {
   const int32_t later[4] = {0};
@@ -330,6 +356,10 @@ static laves_result add_element(reader *r, int64_t number, int64_t type, int32_t
     if (input->tet_count % 65536 == 0 && laves__mesh_input_cancelled(input, r->scan.at)) return laves__fail_cancelled(error);
   } else if (is_triangle(type) || (is_quad(type) && input->polygons)) {
     return add_polygon(r, group, nodes, is_quad(type), error);
+  } else if (input->lines && is_line(type)) {
+    enough = add_line(r, nodes, type_nodes[type]);
+  } else if (input->lines && type == POINT_TYPE) {
+    enough = add_single(r, nodes);
   }
   return enough ? LAVES_OK : laves__fail_memory(input->context, error);
 }
@@ -501,6 +531,10 @@ static laves_result resolve_all(reader *r, laves_error *error) {
   if (r->tet_node_count > 0) result = resolve(r, r->tet_nodes, *r->input->tets, r->tet_node_count, error);
   if (r->face_node_count > 0 && result == LAVES_OK)
     result = resolve(r, r->face_nodes, *r->input->faces, r->face_node_count, error);
+  if (r->single_node_count > 0 && result == LAVES_OK)
+    result = resolve(r, r->single_nodes, r->input->lines->single, r->single_node_count, error);
+  if (r->line_node_count > 0 && result == LAVES_OK)
+    result = resolve(r, r->line_nodes, r->input->lines->node, r->line_node_count, error);
   return result;
 }
 
@@ -598,6 +632,8 @@ laves_result laves__read_gmsh(laves__mesh_input *input, laves_error *error) {
   for (int d = 0; d < 2; d++) laves__free(context, r.entities[d].items, r.entities[d].capacity, sizeof *r.entities[d].items);
   laves__free(context, r.tet_nodes, r.tet_node_capacity, sizeof *r.tet_nodes);
   laves__free(context, r.face_nodes, r.face_node_capacity, sizeof *r.face_nodes);
+  laves__free(context, r.single_nodes, r.single_node_capacity, sizeof *r.single_nodes);
+  laves__free(context, r.line_nodes, r.line_node_capacity, sizeof *r.line_nodes);
   laves__free(context, r.views, r.view_capacity, sizeof *r.views);
   laves__free(context, r.view_names, r.view_name_capacity, sizeof *r.view_names);
   laves__free(context, r.tets.items, r.tets.capacity, sizeof *r.tets.items);

@@ -1,5 +1,5 @@
-/* VTK's XML files of unstructured grids: inline text and base64, appended raw and base64, plain and compressed by zlib,
- * headers of 32 and 64 bits, any number type, any number of pieces.
+/* VTK's XML files of unstructured grids, and of polygons where their vertices and lines are asked for: inline text and base64,
+ * appended raw and base64, plain and compressed by zlib, headers of 32 and 64 bits, any number type, any number of pieces.
  *
  * First the XML is walked, which yields the pieces and for each array of interest where its data stands; then the arrays of
  * each piece are decoded and its tets and triangles picked out, with one array of values for points or tets where the caller
@@ -9,6 +9,7 @@
 #include <string.h>
 #include <zlib.h>
 
+#include "io/line_list.h"
 #include "io/mesh_input.h"
 #include "io/scan.h"
 #include "io/zlib_memory.h"
@@ -34,11 +35,34 @@ typedef struct source {
   const char *begin, *end; /* of inline data */
 } source;
 
-enum { POINTS, CONNECTIVITY, OFFSETS, TYPES, REGION, VALUES, ARRAY_COUNT };
-static const char *const array_names[] = {"the points", "connectivity", "offsets", "types", "the regions", "the values"};
+/* The last four are those of polygon files. */
+enum {
+  POINTS,
+  CONNECTIVITY,
+  OFFSETS,
+  TYPES,
+  REGION,
+  VALUES,
+  VERT_CONNECTIVITY,
+  VERT_OFFSETS,
+  LINE_CONNECTIVITY,
+  LINE_OFFSETS,
+  ARRAY_COUNT
+};
+static const char *const array_names[] = {"the points",
+                                          "connectivity",
+                                          "offsets",
+                                          "types",
+                                          "the regions",
+                                          "the values",
+                                          "the connectivity of vertices",
+                                          "the offsets of vertices",
+                                          "the connectivity of lines",
+                                          "the offsets of lines"};
 
 typedef struct piece {
-  size_t point_count, cell_count;
+  size_t point_count, cell_count; /* polygon files: of vertices and lines in the place of cells */
+  size_t vert_count, line_count;
   source sources[ARRAY_COUNT];
 } piece;
 
@@ -51,6 +75,7 @@ typedef struct candidate {
 
 typedef struct reader {
   laves__mesh_input *input;
+  bool polygons; /* PolyData */
   bool wide_header, compressed;
   bool appended_base64;
   const char *appended; /* first byte behind the '_'; NULL: none */
@@ -152,7 +177,8 @@ static bool attribute_count(const tag *t, const char *name, size_t *count) {
 static laves_result read_file_tag(reader *r, const tag *t, laves_error *error) {
   laves__word value;
   char quote[LAVES__QUOTE_SIZE];
-  if (!attribute_is(t, "type", "UnstructuredGrid"))
+  r->polygons = r->input->lines && attribute_is(t, "type", "PolyData");
+  if (!r->polygons && !attribute_is(t, "type", "UnstructuredGrid"))
     return laves__mesh_input_fail(r->input, error, "it is a VTK file, but not of an unstructured grid");
   if (attribute_is(t, "byte_order", "BigEndian"))
     return laves__mesh_input_fail(r->input, error, "its byte order is big-endian, which is not read; save it as little-endian");
@@ -169,6 +195,12 @@ static laves_result add_piece(reader *r, const tag *t, laves_error *error) {
     return laves__fail_memory(r->input->context, error);
   piece *p = &r->pieces[r->piece_count++];
   memset(p, 0, sizeof *p);
+  if (r->polygons) {
+    attribute_count(t, "NumberOfVerts", &p->vert_count); /* none where it is not said */
+    attribute_count(t, "NumberOfLines", &p->line_count);
+    if (attribute_count(t, "NumberOfPoints", &p->point_count)) return LAVES_OK;
+    return laves__mesh_input_fail(r->input, error, "a piece does not say its number of points");
+  }
   if (attribute_count(t, "NumberOfPoints", &p->point_count) && attribute_count(t, "NumberOfCells", &p->cell_count))
     return LAVES_OK;
   return laves__mesh_input_fail(r->input, error, "a piece does not say its number of points and cells");
@@ -189,6 +221,11 @@ static int array_of(laves__word section, const tag *t) {
   attribute(t, "Name", &name);
   if (laves__word_is(section, "Points")) return POINTS;
   if (laves__word_is(section, "CellData") && is_region_name(name)) return REGION;
+  if (laves__word_is(section, "Verts") || laves__word_is(section, "Lines")) {
+    const bool is_line = laves__word_is(section, "Lines");
+    if (laves__word_is(name, "connectivity")) return is_line ? LINE_CONNECTIVITY : VERT_CONNECTIVITY;
+    return laves__word_is(name, "offsets") ? (is_line ? LINE_OFFSETS : VERT_OFFSETS) : ARRAY_COUNT;
+  }
   if (!laves__word_is(section, "Cells")) return ARRAY_COUNT;
   for (int i = CONNECTIVITY; i <= TYPES; i++)
     if (laves__word_is(name, array_names[i])) return i;
@@ -598,10 +635,83 @@ static int corner_count(int64_t type) {
   }
 }
 
+/* ---- points and lines ---- */
+
+/* What a cell is to those who ask for points and lines. */
+typedef enum line_kind { NO_LINE, SINGLES, STRAIGHT, CURVED } line_kind;
+
+static line_kind line_kind_of(int64_t type) {
+  switch (type) {
+    case 1:
+    case 2:
+      return SINGLES; /* vertex, vertices */
+    case 3:
+    case 4:
+      return STRAIGHT; /* line, polyline */
+    case 21:
+    case 35:
+    case 68:
+    case 75:
+      return CURVED; /* quadratic, cubic, Lagrange, Bezier: the ends come first, then what lies between them */
+    default:
+      return NO_LINE;
+  }
+}
+
+/* One cell of `size` points, of which the first stands at `first` of the connectivity. */
+static laves_result add_line_cell(reader *r, const array *connectivity, line_kind use, int64_t first, int64_t size,
+                                  size_t point_base, size_t point_count, laves_error *error) {
+  laves__line_list *list = r->input->lines;
+  bool enough = true;
+  for (int64_t j = 0; j < size && enough; j++) {
+    const int64_t at = use != CURVED || j == 0 ? j : j == size - 1 ? 1 : j + 1;
+    const int64_t index = integer_at(connectivity, (size_t)(first + at));
+    if (index < 0 || (uint64_t)index >= point_count)
+      return laves__mesh_input_fail(r->input, error, "a line uses point %lld, but the points are 0 to %lld", (long long)index,
+                                    (long long)point_count - 1);
+    const int32_t point = (int32_t)(point_base + (size_t)index);
+    enough = use == SINGLES ? laves__line_list_add_single(list, point) : laves__line_list_add_node(list, point);
+  }
+  return enough && laves__line_list_end(list) ? LAVES_OK : laves__fail_memory(r->input->context, error);
+}
+
+/* The vertices or lines of a polygon file. */
+static laves_result add_polygon_lines(reader *r, const piece *p, bool is_line, size_t point_base, laves_error *error) {
+  const int first_array = is_line ? LINE_CONNECTIVITY : VERT_CONNECTIVITY;
+  const size_t count = is_line ? p->line_count : p->vert_count;
+  array connectivity = {0}, offsets = {0};
+  if (count == 0) return LAVES_OK;
+  for (int i = first_array; i < first_array + 2; i++)
+    if (p->sources[i].place != ABSENT && p->sources[i].kind >= FLOAT32)
+      return laves__mesh_input_fail(r->input, error, "the array of %s must hold integers", array_names[i]);
+  laves_result result = read_array(r, p, first_array + 1, count, &offsets, error);
+  const int64_t used = result == LAVES_OK ? integer_at(&offsets, count - 1) : 0;
+  if (result == LAVES_OK && (used < 0 || (uint64_t)used > SIZE_MAX / 64))
+    result = fail_array(r, array_names[first_array + 1], error);
+  if (result == LAVES_OK) result = read_array(r, p, first_array, (size_t)used, &connectivity, error);
+  int64_t first = 0;
+  for (size_t i = 0; i < count && result == LAVES_OK; i++) {
+    const int64_t end = integer_at(&offsets, i);
+    if (end < first || end > used)
+      result = laves__mesh_input_fail(r->input, error, "the offset of line %zu (counted from 0) is out of order", i);
+    else
+      result =
+          add_line_cell(r, &connectivity, is_line ? STRAIGHT : SINGLES, first, end - first, point_base, p->point_count, error);
+    first = end;
+  }
+  free_array(r, &offsets);
+  free_array(r, &connectivity);
+  return result;
+}
+
+/* ---- cells ---- */
+
 static laves_result add_cell(reader *r, const array arrays[ARRAY_COUNT], size_t cell, int64_t first, int64_t size,
                              size_t point_base, size_t point_count, laves_error *error) {
   const int64_t type = integer_at(&arrays[TYPES], cell);
   const int corners = corner_count(type);
+  const line_kind use = r->input->lines ? line_kind_of(type) : NO_LINE;
+  if (use != NO_LINE) return add_line_cell(r, &arrays[CONNECTIVITY], use, first, size, point_base, point_count, error);
   if (corners == 0) return LAVES_OK;
   if (size < corners) return laves__mesh_input_fail(r->input, error, "cell %zu (counted from 0) has too few corners", cell);
   int32_t indices[4];
@@ -673,6 +783,8 @@ static laves_result read_piece(reader *r, const piece *p, laves_error *error) {
   if (result == LAVES_OK) result = add_points(r, p, error);
   const laves__mesh_values *values = &r->input->values;
   if (result == LAVES_OK && values->wanted && !values->per_tet) result = add_values(r, p, error);
+  if (result == LAVES_OK && r->polygons) result = add_polygon_lines(r, p, false, point_base, error);
+  if (result == LAVES_OK && r->polygons) result = add_polygon_lines(r, p, true, point_base, error);
   if (result != LAVES_OK || p->cell_count == 0) return result;
   result = read_array(r, p, OFFSETS, p->cell_count, &arrays[OFFSETS], error);
   if (result == LAVES_OK) result = read_array(r, p, TYPES, p->cell_count, &arrays[TYPES], error);

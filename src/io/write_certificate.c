@@ -93,9 +93,11 @@ static void put_member(writer *w, const laves_certificate *certificate, const la
       laves__output_printf(&w->out, "%lld", (long long)*(const int64_t *)at);
       break;
     case LAVES__MEMBER_NUMBER:
+    case LAVES__MEMBER_LATER_NUMBER:
       put_numbers(w, at, member->count);
       break;
     case LAVES__MEMBER_FLAG:
+    case LAVES__MEMBER_LATER_FLAG:
       laves__output_printf(&w->out, "%s", *(const bool *)at ? "true" : "false");
       break;
     case LAVES__MEMBER_ALIGN:

@@ -313,7 +313,11 @@ static void assert_same(const laves_certificate *a, const laves_certificate *b) 
       case LAVES__MEMBER_INTEGER:
         assert_int_equal(*(const int64_t *)x, *(const int64_t *)y);
         break;
+      case LAVES__MEMBER_LATER_NUMBER:
+        assert_true(*(const double *)x == *(const double *)y);
+        break;
       case LAVES__MEMBER_FLAG:
+      case LAVES__MEMBER_LATER_FLAG:
         assert_int_equal(*(const bool *)x, *(const bool *)y);
         break;
       default:
@@ -365,6 +369,51 @@ static void through_a_file(void **state) {
   assert_string_equal(differences[0].text, "topology.genus: the certificate says 7, and it is 1");
   laves_mesh_free(mesh);
   laves_domain_free(domain);
+  fixture_folder_remove(folder);
+}
+
+/* Takes the lines of a file that have a word out. */
+static void drop_lines(const char *path, const char *word) {
+  char kept[60000], line[2000];
+  size_t length = 0;
+  FILE *file = fopen(path, "r");
+  assert_non_null(file);
+  while (fgets(line, sizeof line, file)) {
+    if (strstr(line, word)) continue;
+    assert_true(length + strlen(line) < sizeof kept);
+    memcpy(kept + length, line, strlen(line));
+    length += strlen(line);
+  }
+  fclose(file);
+  file = fopen(path, "w");
+  assert_non_null(file);
+  assert_int_equal(fwrite(kept, 1, length, file), length);
+  fclose(file);
+}
+
+/* What was asked of features stands in the file; files of versions that knew of none are read, and say that none were kept. */
+static void features_asked(void **state) {
+  static const char *const words[] = {"\"feature_angle\"", "\"feature_tags\"", "\"keep_thin\""};
+  char folder[FIXTURE_FOLDER_MAX], path[FIXTURE_FOLDER_MAX + 20];
+  laves_mesh *mesh = fixture_cubes(*state, 1, 1, 1, NULL, NULL);
+  laves_options made = laves_options_default();
+  laves_certificate read;
+  assert_true(fixture_folder_make(folder));
+  snprintf(path, sizeof path, "%s/a.json", folder);
+  made.feature_angle = 25;
+  made.feature_tags = true;
+  laves_report report = {.size = 1};
+  laves_certify_options options = laves_certify_options_default();
+  options.options = &made;
+  options.report = &report;
+  const laves_certificate c = certify(*state, mesh, &options);
+  assert_int_equal(laves_certificate_write(*state, &c, path, NULL), LAVES_OK);
+  assert_int_equal(laves_certificate_read(*state, path, &read, NULL), LAVES_OK);
+  assert_true(read.options.feature_angle == 25 && read.options.feature_tags && read.options.keep_thin);
+  for (size_t i = 0; i < LAVES__COUNT_OF(words); i++) drop_lines(path, words[i]);
+  assert_int_equal(laves_certificate_read(*state, path, &read, NULL), LAVES_OK);
+  assert_true(read.options.feature_angle == 0 && !read.options.feature_tags && !read.options.keep_thin);
+  laves_mesh_free(mesh);
   fixture_folder_remove(folder);
 }
 
@@ -630,6 +679,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(implicit_surfaces, set_up, tear_down),
       cmocka_unit_test_setup_teardown(bound_of_iterated_feet, set_up, tear_down),
       cmocka_unit_test_setup_teardown(through_a_file, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(features_asked, set_up, tear_down),
       cmocka_unit_test_setup_teardown(graded_tiles, set_up, tear_down),
       cmocka_unit_test_setup_teardown(kept_features, set_up, tear_down),
       cmocka_unit_test_setup_teardown(lost_features, set_up, tear_down),
