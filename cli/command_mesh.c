@@ -33,7 +33,8 @@ typedef struct mesh_run {
   double certify_seconds;
 } mesh_run;
 
-static laves_options make_options(const settings *given, const laves_sizing *sizing, const laves_features *features) {
+static laves_options make_options(const settings *given, const laves_sizing *sizing, const laves_features *features,
+                                  const laves_domain_info *info) {
   laves_options options = laves_options_default();
   options.size = given->size;
   options.relative_size = given->relative_size;
@@ -51,7 +52,7 @@ static laves_options make_options(const settings *given, const laves_sizing *siz
     options.max_dihedral = given->window.values[1];
   }
   if (given->volume_length >= 0) options.volume_length = given->volume_length;
-  sizing_options(given, sizing, &options);
+  sizing_options(given, sizing, info, &options);
   features_options(given, features, &options);
   return options;
 }
@@ -146,7 +147,7 @@ static laves_result mesh_steps(session *run, mesh_run *all) {
   if (result == LAVES_OK) result = input_open(run, given->input, &all->in);
   if (result != LAVES_OK) return result;
 
-  all->options = make_options(given, all->sizing, all->features);
+  all->options = make_options(given, all->sizing, all->features, &all->in.info);
   result = laves_generate(run->context, all->in.domain, &all->options, &all->mesh, &all->report, &run->error);
   result = session_settle(run, result);
   if (result != LAVES_OK && result != LAVES_TARGET_MISSED) return result;

@@ -88,7 +88,9 @@ const option option_rows[] = {
     {"feature-elements", 0, MESH | INFO, IN_SIZING, OPTION_REAL, "N", "elements", false, 0.5, 100, NULL, MEMBER(feature_elements),
      0, "elements between creases that come close to one another (surfaces only)"},
     {"max-distance", 0, MESH | INFO, IN_SIZING, OPTION_REAL, "D", "units of the input", true, 0, INFINITY, NULL,
-     MEMBER(max_distance), 0, "size the boundary so that it lies within this distance of the surface where that is smooth"},
+     MEMBER(max_distance), 2, "size the boundary so that it lies within this distance of the surface where that is smooth"},
+    {"rel-distance", 0, MESH | INFO, IN_SIZING, OPTION_REAL, "F", NULL, true, 0, 0.5, NULL, MEMBER(relative_distance), 2,
+     "the same distance as a fraction of the diagonal of the bounding box"},
     {"interior-growth", 0, MESH | INFO, IN_SIZING, OPTION_REAL, "G", "size per depth", true, 0, 1, NULL, MEMBER(interior_growth),
      0,
      "fine at the surface, coarse inside: the size grows by this per unit of depth, beyond the size above; no faster than "

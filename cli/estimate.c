@@ -145,7 +145,7 @@ laves_result estimate_varying(session *run, const input *in, const laves_sizing 
   options.relative_size = run->given->relative_size;
   options.tet_target = run->given->tets;
   options.vertex_target = run->given->vertices;
-  sizing_options(run->given, sizing, &options);
+  sizing_options(run->given, sizing, &in->info, &options);
   features_options(run->given, features, &options);
   const laves_result outcome = laves_estimate(run->context, in->domain, &options, &expected, &run->error);
   if (outcome != LAVES_OK) return session_settle(run, outcome);

@@ -307,7 +307,7 @@ static bool note_use(parser *state, const option *row, char *sentence) {
   if (row->group == 0) return true;
   const char **first = &state->group_names[row->group];
   if (*first) {
-    snprintf(sentence, SENTENCE_CAPACITY, "'--%s' and '--%s' cannot both be given: each sets the size", *first, row->name);
+    snprintf(sentence, SENTENCE_CAPACITY, "'--%s' and '--%s' cannot both be given: they set the same", *first, row->name);
     return false;
   }
   *first = row->name;

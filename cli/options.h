@@ -51,7 +51,7 @@ typedef struct settings {
   int64_t memory; /* bytes; 0: no limit */
   option_numbers cells;
   double grading, min_size, max_size; /* sizes 0: not given */
-  double curvature_elements, thickness_elements, feature_elements, max_distance, interior_growth;
+  double curvature_elements, thickness_elements, feature_elements, max_distance, relative_distance, interior_growth;
   option_texts size_fields, refinements;
   option_texts features;
   double feature_angle; /* degrees */

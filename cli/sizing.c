@@ -186,7 +186,13 @@ laves_result sizing_open(session *run, laves_sizing **sizing) {
   return session_settle(run, result);
 }
 
-void sizing_options(const settings *given, const laves_sizing *sizing, laves_options *options) {
+static double diagonal_of(const laves_domain_info *info) {
+  double square = 0;
+  for (int i = 0; i < 3; ++i) square += (info->upper[i] - info->lower[i]) * (info->upper[i] - info->lower[i]);
+  return sqrt(square);
+}
+
+void sizing_options(const settings *given, const laves_sizing *sizing, const laves_domain_info *info, laves_options *options) {
   options->sizing = sizing;
   options->grading = given->grading;
   options->min_size = given->min_size;
@@ -194,13 +200,14 @@ void sizing_options(const settings *given, const laves_sizing *sizing, laves_opt
   options->curvature_elements = given->curvature_elements;
   options->thickness_elements = given->thickness_elements;
   options->feature_elements = given->feature_elements;
-  options->max_distance = given->max_distance;
+  options->max_distance = given->max_distance > 0 ? given->max_distance : given->relative_distance * diagonal_of(info);
   options->interior_growth = given->interior_growth;
 }
 
 bool sizing_is_asked(const settings *given) {
   return given->size_fields.count > 0 || given->refinements.count > 0 || given->curvature_elements > 0 ||
-         given->thickness_elements > 0 || given->feature_elements > 0 || given->max_distance > 0 || given->interior_growth > 0;
+         given->thickness_elements > 0 || given->feature_elements > 0 || given->max_distance > 0 ||
+         given->relative_distance > 0 || given->interior_growth > 0;
 }
 
 static void write_texts(json *out, const char *key, const option_texts *list) {
@@ -221,6 +228,7 @@ void sizing_write_json(json *out, const settings *given) {
       {"thickness_elements", given->thickness_elements},
       {"feature_elements", given->feature_elements},
       {"max_distance", given->max_distance},
+      {"relative_distance", given->relative_distance},
       {"interior_growth", given->interior_growth},
   };
   json_open_object(out, "sizing");

@@ -8,8 +8,8 @@
  * @param sizing  out: NULL when there are none; free with laves_sizing_free() whatever the result */
 laves_result sizing_open(session *run, laves_sizing **sizing);
 
-/* Copies the size options given into the library's. */
-void sizing_options(const settings *given, const laves_sizing *sizing, laves_options *options);
+/* Copies the size options given into the library's; the input's box is for those that are fractions of it. */
+void sizing_options(const settings *given, const laves_sizing *sizing, const laves_domain_info *info, laves_options *options);
 
 /* Whether anything of it was given that makes sizes vary. */
 bool sizing_is_asked(const settings *given);

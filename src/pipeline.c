@@ -109,6 +109,7 @@ static laves_result refine_where_distant(laves__run *r, laves_mesh **mesh, bool 
   if (!place) return laves__fail_memory(r->context, r->error);
   laves__stage_begin(r);
   laves_result result = laves_check_distance(r->context, *mesh, r->domain, wished, place, PLACES, &r->distant, r->error);
+  if (r->distant > 0) r->distant_place = v3(place[0].place[0], place[0].place[1], place[0].place[2]);
   const size_t known = r->distant < PLACES ? r->distant : PLACES;
   if (result == LAVES_OK && r->round++ < ROUNDS && !laves__wishes_approach(&r->wishes, &r->tree, wished, place, known, again))
     result = laves__fail_memory(r->context, r->error);

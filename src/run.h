@@ -43,6 +43,7 @@ typedef struct laves__run {
   int recounts;                      /* how often all was made again for a count */
   int round;                         /* of refinement for the sake of the distance */
   size_t distant;                    /* places still further away than asked */
+  laves__vec3 distant_place;         /* the furthest of them */
   bool rough;                        /* the solid is rougher than the size */
   laves__region_counts regions;
   double wall, cpu; /* at the start of the stage under way */

@@ -108,8 +108,10 @@ laves_result laves__judge(laves__run *r, const laves_mesh *mesh) {
                 "%zu tetrahedra are outside the promised window of %g to %g degrees, which should not happen; please report it",
                 broken, report->promised_min_dihedral, report->promised_max_dihedral);
   if (r->distant)
-    laves__warn(r, "at %zu places mesh and surface are further apart than the %g asked for; a smaller min_size may help",
-                r->distant, o->max_distance);
+    laves__warn(r,
+                "at %zu places mesh and surface are further apart than the %g asked for, the furthest at (%g, %g, %g); a smaller "
+                "min_size may help",
+                r->distant, o->max_distance, r->distant_place.x, r->distant_place.y, r->distant_place.z);
   judge_parts(r, mesh);
   const double wished = o->tet_target ? (double)o->tet_target : (double)o->vertex_target;
   const double got = o->tet_target ? (double)mesh->tet_count : (double)mesh->vertex_count;
