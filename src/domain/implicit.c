@@ -262,6 +262,7 @@ static void fill_domain(laves_domain *domain, implicit *s, laves__box3 box, lave
                                    .project_many = project_many,
                                    .side = side,
                                    .sample = sample,
+                                   .drawn = s->model.kept,
                                    .free = free_implicit};
   snprintf(domain->format, sizeof domain->format, "%s", is_expression ? "Lua expression" : "Lua script");
   domain->info =
