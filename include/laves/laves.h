@@ -276,6 +276,7 @@ LAVES_API void laves_features_free(laves_features *features);
 /// Adds points, in the units of the input, each of which becomes a vertex of the mesh at exactly that place.
 /// @param points  double[count][3], finite; copied. That one is off the surface by more than 1e-3 of the diagonal of the domain's
 ///                box is an error (LAVES_ERROR_INPUT) when the mesh is made.
+/// @return LAVES_OK, LAVES_ERROR_OPTION, LAVES_ERROR_MEMORY; so the next
 LAVES_API laves_result laves_features_add_points(laves_features *features, const double *points, size_t count,
                                                  laves_error *error);
 
@@ -285,8 +286,10 @@ LAVES_API laves_result laves_features_add_points(laves_features *features, const
 LAVES_API laves_result laves_features_add_line(laves_features *features, const double *points, size_t count, laves_error *error);
 
 /// Adds the points and lines of a file: laves' own text, OBJ (p and l elements), Gmsh .msh 2.2 and 4.1 (point and line elements),
-/// legacy VTK and VTP text (vertices and lines). docs/feature-files.md tells the forms.
-/// @return LAVES_OK, LAVES_ERROR_INPUT (with the line or byte), LAVES_ERROR_MEMORY
+/// legacy VTK, VTU and VTP (vertices and lines). Elements of two points are joined to lines where two of them meet.
+/// docs/feature-files.md tells the forms.
+/// @return LAVES_OK, LAVES_ERROR_INPUT (with the line, byte or element; nothing of the file is added then), LAVES_ERROR_MEMORY,
+///         LAVES_ERROR_CANCELLED
 LAVES_API laves_result laves_features_add_file(laves_features *features, const char *path, laves_error *error);
 
 /* ---- options ---------------------------------------------------------------------------------------------------- */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "domain/elementary.h"
+#include "domain/kept.h"
 
 const uint8_t laves__op_operands[LAVES__OP_COUNT] = {
 #define LAVES__OP_ROW(name, operands) operands,
@@ -21,6 +22,7 @@ void laves__expression_free(laves__expression *e) {
   laves__free(e->context, e->table, e->table_size, sizeof *e->table);
   laves__free(e->context, e->affines, e->affine_capacity, sizeof *e->affines);
   laves__free(e->context, e->warps, e->warp_capacity, sizeof *e->warps);
+  laves__kept_free(e);
   laves__expression_init(e, e->context);
 }
 

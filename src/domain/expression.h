@@ -79,6 +79,8 @@ typedef struct laves__warp {
   laves__node coordinate[3];
 } laves__warp;
 
+struct laves__keeps;
+
 typedef struct laves__expression {
   laves_context *context;
   laves__node_data *nodes;
@@ -89,6 +91,7 @@ typedef struct laves__expression {
   size_t affine_count, affine_capacity;
   laves__warp *warps;
   size_t warp_count, warp_capacity;
+  struct laves__keeps *keeps;    /* see kept.h; NULL: nothing is kept */
   bool out_of_memory, too_large; /* why a call returned LAVES__NO_NODE */
 } laves__expression;
 

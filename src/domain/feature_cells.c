@@ -114,6 +114,7 @@ int32_t laves__branch_of_foot(laves__crease_search *s, const laves__code *code, 
                               double depth) {
   laves__branches *branches = &s->all->branches;
   s->work += 8 * (double)code->tape.count;
+  if (s->out_of_memory) return LAVES__NO_BRANCH; /* the last branch may have no place in the lists */
   if (!parts_space(&code->tape, foot, *normal, depth)) return LAVES__NO_BRANCH;
   for (int side = -1; side <= 1; side += 2) {
     laves__signature signature;
@@ -124,7 +125,8 @@ int32_t laves__branch_of_foot(laves__crease_search *s, const laves__code *code, 
     const size_t known = branches->count;
     const int32_t b = laves__branches_add(branches, &signature);
     s->out_of_memory = s->out_of_memory || branches->out_of_memory;
-    if (b == LAVES__NO_BRANCH || (branches->count > known && !enter_branches(s, known))) continue;
+    if (branches->count > known && !enter_branches(s, known)) return LAVES__NO_BRANCH;
+    if (b == LAVES__NO_BRANCH) continue;
     laves__vec3 own;
     if (!laves__branch_passes(&branches->tape[b], foot, depth, &own)) continue;
     *normal = own;

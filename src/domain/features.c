@@ -65,6 +65,8 @@ laves_result laves__features_find(laves_context *context, const laves__oracle *o
   laves_result result = LAVES_OK;
   one_patch(features);
   if (oracle->find_features && (wish->angle > 0 || wish->tags)) result = oracle->find_features(wish, features, &lines, error);
+  const laves__feature_wish own = {wish->angle, wish->tags, oracle->drawn, wish->size};
+  if (result == LAVES_OK && own.drawn) result = laves__features_drawn(&own, features, &lines, error);
   if (result == LAVES_OK && wish->drawn) result = laves__features_drawn(wish, features, &lines, error);
   if (result == LAVES_OK) result = laves__features_chain(&lines, wish, features, error);
   laves__feature_lines_free(&lines);

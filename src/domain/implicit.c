@@ -313,6 +313,7 @@ static void fill_domain(laves_domain *domain, implicit *s, laves__box3 box, lave
                                    .side = side,
                                    .sample = sample,
                                    .find_features = find_features,
+                                   .drawn = s->model.kept,
                                    .free = free_implicit};
   snprintf(domain->format, sizeof domain->format, "%s", is_expression ? "Lua expression" : "Lua script");
   domain->info =

@@ -78,6 +78,9 @@ typedef struct laves__oracle {
   laves_result (*find_features)(const struct laves__feature_wish *wish, struct laves__features *features,
                                 struct laves__feature_lines *lines, laves_error *error);
 
+  /* Points and lines to keep that come with the domain, in input coordinates; NULL: none. */
+  const struct laves_features *drawn;
+
   void (*free)(laves_context *context, void *self);
 } laves__oracle;
 

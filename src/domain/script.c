@@ -7,6 +7,8 @@
  * math.random() starts from a fixed seed, so a script means the same solid on every run. */
 #include "domain/script.h"
 
+#include "domain/kept.h"
+
 #include <lauxlib.h>
 #include <lua.h>
 #include <lualib.h>
@@ -205,6 +207,9 @@ static void take_solid(lua_State *L, laves__script *script) {
     luaL_error(L, "%s: the script yields %s; it must return a solid, or a field that is negative inside", script->name,
                laves__script_type(L, -1));
   script->model->shape = laves__script_solid(L, -1, "return");
+  if (script->model->expression.out_of_memory) luaL_error(L, "out of memory");
+  if (laves__kept_is_too_large(&script->model->expression))
+    luaL_error(L, "%s: keep: at most %d points and vertices, copies counted", script->name, (int)LAVES__KEPT_LIMIT);
 }
 
 static void take_size(lua_State *L, laves__script *script) {
@@ -275,7 +280,8 @@ laves_result laves__script_run(laves_context *context, const char *text, size_t 
   *model = (laves__model){0};
   laves__expression_init(&model->expression, context);
   job work = {text, length, is_expression, false};
-  return run_job(context, &work, name, folder, model, error);
+  const laves_result result = run_job(context, &work, name, folder, model, error);
+  return result == LAVES_OK ? laves__kept_list(&model->expression, model->shape.kept, &model->kept, error) : result;
 }
 
 laves_result laves__script_run_size(laves_context *context, const char *text, size_t length, bool is_expression, const char *name,
@@ -301,6 +307,7 @@ void laves__model_free(laves_context *context, laves__model *model) {
   laves__tag_list_free(context, &model->regions);
   laves__free(context, model->leaf_tag_first, model->leaf_first_capacity, sizeof *model->leaf_tag_first);
   laves__free(context, model->leaf_tags, model->leaf_tag_capacity, sizeof *model->leaf_tags);
+  laves_features_free(model->kept);
   laves__expression_free(&model->expression);
   *model = (laves__model){0};
 }

@@ -13,6 +13,7 @@ typedef struct laves__model {
   laves__expression expression;
   laves__shape shape;    /* the solid; its node is in `expression` */
   laves_domain **leaves; /* surfaces that LEAF nodes number */
+  laves_features *kept;  /* by keep(); NULL: nothing */
   size_t leaf_count, leaf_capacity;
   laves__tag_list names;    /* of parts of the surface; the first is that of all that has no other. Empty: nothing is named */
   laves__tag_list regions;  /* the same for the inside */
@@ -98,6 +99,11 @@ void laves__script_add_primitives(struct lua_State *L); /* script_primitive.c */
 void laves__script_add_solids(struct lua_State *L);     /* script_solid.c: combining and changing; methods of solids */
 /* Adds d, the value of leaf `leaf` (script_field.c). */
 void laves__script_add_depth(struct lua_State *L, uint32_t leaf);
+
+/* keep(), a Lua function (script_keep.c). */
+int laves__script_keep(struct lua_State *L);
+/* Raises an error where a solid has points and lines to keep that a function would move off the surface. */
+void laves__script_refuse_kept(struct lua_State *L, const laves__shape *solid, const char *function);
 
 /* The item as a number or a field; raises an error for anything else. */
 laves__node laves__script_field(struct lua_State *L, int index, const char *function);

@@ -75,6 +75,7 @@ static int offset(lua_State *L) {
   static const laves__parameter p = {"distance", LAVES__ANY, NAN};
   double distance;
   const laves__shape a = laves__script_solid(L, 1, "offset");
+  laves__script_refuse_kept(L, &a, "offset");
   laves__script_arguments(L, "offset", 2, &p, 1, &distance);
   return push(L, laves__shape_offset(store(L), &a, distance));
 }
@@ -91,6 +92,8 @@ static int morph(lua_State *L) {
   static const laves__parameter p = {"t", LAVES__NONNEGATIVE, NAN};
   const laves__shape a = laves__script_solid(L, 1, "morph"), b = laves__script_solid(L, 2, "morph");
   double t;
+  laves__script_refuse_kept(L, &a, "morph");
+  laves__script_refuse_kept(L, &b, "morph");
   laves__script_arguments(L, "morph", 3, &p, 1, &t);
   if (t > 1) return luaL_error(L, "morph: t must be a number from 0 to 1, not %f", t);
   return push(L, laves__shape_morph(store(L), &a, &b, t));
@@ -217,6 +220,7 @@ static laves__node coordinate(lua_State *L, int index) {
 /* warp(solid, X, Y, Z): the solid's value at (X, Y, Z). */
 static int warp(lua_State *L) {
   const laves__shape a = laves__script_solid(L, 1, "warp");
+  laves__script_refuse_kept(L, &a, "warp");
   lua_settop(L, 4);
   const laves__node to[3] = {coordinate(L, 2), coordinate(L, 3), coordinate(L, 4)};
   return push(L, laves__shape_of_node(laves__node_warp(store(L), a.node, to)));
@@ -362,6 +366,7 @@ static const luaL_Reg solid_functions[] = {
     {"repeat_grid", repeat_grid},
     {"repeat_polar", repeat_polar},
     {"surface", surface},
+    {"keep", laves__script_keep},
     {NULL, NULL},
 };
 

@@ -10,6 +10,7 @@
 
 #include "domain/elementary.h"
 #include "domain/expression_short.h"
+#include "domain/kept.h"
 
 static laves__box3 all_space(void) { return (laves__box3){{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}}; }
 
@@ -45,6 +46,7 @@ static laves__box3 box_grown(laves__box3 a, double by) {
 laves__shape laves__shape_complement(E *e, const laves__shape *a) {
   laves__shape r = laves__shape_of_node(neg_(e, a->node));
   r.exact = a->exact;
+  r.kept = a->kept;
   return r;
 }
 
@@ -62,6 +64,7 @@ laves__shape laves__shape_boolean(E *e, laves__boolean kind, const laves__shape 
     r.node = max_(e, a->node, b->node);
     r.box = box_meet(a->box, b->box);
   }
+  r.kept = laves__kept_both(e, a->kept, b->kept);
   return r;
 }
 
@@ -71,6 +74,7 @@ laves__shape laves__shape_offset(E *e, const laves__shape *a, double distance) {
   r.box = box_grown(a->box, distance > 0 ? distance / a->slope : 0);
   r.exact = false;
   r.volume = r.area = NAN;
+  r.kept = 0;
   return r;
 }
 
@@ -147,6 +151,7 @@ static laves__shape transformed(E *e, const laves__shape *a, const laves__affine
   /* Turning a box makes coordinate differences up to sqrt(3) larger. */
   r.slope = a->slope * least / (most * (keeps_axes(&map->m) ? 1 : 1.7320508075688774));
   r.exact = a->exact && least == most;
+  r.kept = laves__kept_moved(e, a->kept, map);
   return r;
 }
 

@@ -15,6 +15,7 @@ typedef struct laves__shape {
   double slope;
   bool exact;          /* node is the signed distance to the surface */
   double volume, area; /* exact, or NAN */
+  uint32_t kept;       /* points and lines of its surface that go with it; see kept.h; 0: none */
 } laves__shape;
 
 /* A solid about which nothing is known but its value. */

@@ -51,7 +51,13 @@ static bool reserve_trails(laves_context *context, laves__branch_room *room, siz
   room->visited = laves__alloc(context, 2 * count, sizeof *room->visited);
   room->stack = laves__alloc(context, 4 * count, sizeof *room->stack);
   room->trail_capacity = 2 * count;
-  return room->visited && room->stack;
+  if (room->visited && room->stack) return true;
+  laves__free(context, room->visited, 2 * count, sizeof *room->visited);
+  laves__free(context, room->stack, 4 * count, sizeof *room->stack);
+  room->visited = NULL;
+  room->stack = NULL;
+  room->trail_capacity = 0; /* so that the next call tries again */
+  return false;
 }
 
 /* ---- choices ---- */
@@ -138,7 +144,13 @@ static bool reserve(laves_context *context, laves__code *code, size_t count) {
   code->tape.instructions = laves__alloc(context, count, sizeof *code->tape.instructions);
   code->item = laves__alloc(context, count, sizeof *code->item);
   code->capacity = count;
-  return code->tape.instructions && code->item;
+  if (code->tape.instructions && code->item) return true;
+  laves__free(context, code->tape.instructions, count, sizeof *code->tape.instructions);
+  laves__free(context, code->item, count, sizeof *code->item);
+  code->tape.instructions = NULL;
+  code->item = NULL;
+  code->capacity = 0; /* so that the next call tries again */
+  return false;
 }
 
 void laves__code_free(laves_context *context, laves__code *code) {

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "domain/oracle.h"
+#include "domain/features.h"
 #include "fixtures/assert_close.h"
 
 typedef struct made {
@@ -192,6 +192,66 @@ static void examples_of_the_manual_run(void **state) {
 
 /* ---- messages ---- */
 
+/* ---- what is kept ---- */
+
+/* Points and lines go as their solids do, in the order in which they were drawn. */
+static void kept_goes_with_the_solid(void **state) {
+  static const struct {
+    const char *text;
+    size_t point_count, line_count;
+    laves__vec3 first, last; /* the first point, and the last vertex or else point */
+  } cases[] = {
+      {"sphere(1)", 0, 0, {0, 0, 0}, {0, 0, 0}},
+      {"keep(sphere(1), {})", 0, 0, {0, 0, 0}, {0, 0, 0}},
+      {"keep(sphere(1), {points={{1, 0, 0}, {x=0, y=1, z=0}}})", 2, 0, {1, 0, 0}, {0, 1, 0}},
+      {"sphere(1):keep{points={{1, 0, 0}, 'z'}}", 2, 0, {1, 0, 0}, {0, 0, 1}},
+      {"keep(x*x + y*y + z*z - 1, {points={{1, 0, 0}}})", 1, 0, {1, 0, 0}, {1, 0, 0}},
+      {"keep(sphere(1), {points={{1, 0, 0}}, lines={{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}})", 1, 1, {1, 0, 0}, {0, 0, 1}},
+      {"keep(keep(sphere(1), {points={{1, 0, 0}}}), {points={{0, 1, 0}}})", 2, 0, {1, 0, 0}, {0, 1, 0}},
+      {"keep(sphere(1), {points={{1, 0, 0}}}):move(1, 2, 3)", 1, 0, {2, 2, 3}, {2, 2, 3}},
+      {"keep(sphere(1), {points={{1, 0, 0}}}):move(1, 2, 3):rotate(90):scale(2, 1, 1)", 1, 0, {-4, 2, 3}, {-4, 2, 3}},
+      {"mirror(keep(sphere(1), {points={{1, 0, 0}}}), 'x')", 1, 0, {-1, 0, 0}, {-1, 0, 0}},
+      {"keep(sphere(1), {points={{1, 0, 0}}}) + keep(sphere(1), {points={{0, 1, 0}}}):move(5, 0, 0)", 2, 0, {1, 0, 0}, {5, 1, 0}},
+      {"box(3) - keep(sphere(1.6), {points={{0, 0, 1.6}}})", 1, 0, {0, 0, 1.6}, {0, 0, 1.6}},
+      {"keep(sphere(1), {points={{1, 0, 0}}}) & box(4)", 1, 0, {1, 0, 0}, {1, 0, 0}},
+      {"smooth_union(keep(sphere(1), {points={{-1, 0, 0}}}), sphere(1):move(2, 0, 0), 0.1)", 1, 0, {-1, 0, 0}, {-1, 0, 0}},
+      {"bounds(shell(keep(sphere(1), {points={{-1, 0, 0}}}), 0.2), {-2, -2, -2}, {2, 2, 2})", 1, 0, {-1, 0, 0}, {-1, 0, 0}},
+      {"repeat_linear(keep(sphere(1), {points={{-1, 0, 0}}}), {step={3, 0, 0}, count=3})", 3, 0, {-1, 0, 0}, {5, 0, 0}},
+      {"repeat_polar(keep(sphere(1), {points={{-1, 0, 0}}}):move(5, 0, 0), {count=4})", 4, 0, {4, 0, 0}, {0, -4, 0}},
+  };
+  (void)state;
+  for (size_t i = 0; i < LAVES__COUNT_OF(cases); i++) {
+    made m = make(cases[i].text, true);
+    const laves_features *f = m.domain->oracle.drawn;
+    assert_int_equal(f ? f->point_count : 0, cases[i].point_count);
+    assert_int_equal(f ? f->line_count : 0, cases[i].line_count);
+    if (f) {
+      const laves__vec3 last = f->line_count ? f->vertex[f->vertex_count - 1] : f->point[f->point_count - 1];
+      assert_close(v3_distance(f->point[0], cases[i].first), 0, 1e-12);
+      assert_close(v3_distance(last, cases[i].last), 0, 1e-12);
+    }
+    drop(&m);
+  }
+}
+
+/* What a script keeps is found as what the caller draws is; a point that another solid swallows is off the surface. */
+static void kept_is_found(void **state) {
+  static const laves__feature_wish wish = {.size = 0.1};
+  (void)state;
+  for (int i = 0; i < 2; i++) {
+    made m = make(i ? "keep(sphere(1), {points={{1, 0, 0}}}) + sphere(1):move(1.2, 0, 0)"
+                    : "keep(sphere(1), {points={{1, 0, 0}}}) + sphere(1):move(3, 0, 0)",
+                  true);
+    laves__features features;
+    laves_error error = {0};
+    assert_int_equal(laves__features_find(m.context, &m.domain->oracle, &wish, &features, &error),
+                     i ? LAVES_ERROR_INPUT : LAVES_OK);
+    if (i) assert_non_null(strstr(error.text, "point 1 (counted from 1), at (1, 0, 0), is "));
+    laves__features_free(&features);
+    drop(&m);
+  }
+}
+
 typedef struct mistake {
   const char *text, *message;
 } mistake;
@@ -221,6 +281,21 @@ static const mistake mistakes[] = {
     {"repeat_linear(sphere(1), {step={1, 0, 0}, count=0.5})", "name:1: repeat_linear: count must be a whole number"},
     {"metaballs{}", "name:1: metaballs: expected 1 to 10000 balls"},
     {"metaballs{{0, 0, 0, 1}, blur=2}", "name:1: metaballs has no option 'blur'"},
+    {"keep(sphere(1))", "name:1: keep: expected a solid and a table"},
+    {"keep(1, {})", "name:1: keep: expected a solid, not a number"},
+    {"keep(sphere(1), {spots={}})", "name:1: keep has no option 'spots'; it knows points and lines"},
+    {"keep(sphere(1), {points=3})", "name:1: keep: points must be a list, as in points={{0, 0, 1}}, not a number"},
+    {"keep(sphere(1), {points={1, 0, 0}})", "name:1: keep: each point must be a number"},
+    {"keep(sphere(1), {points={{1, 0}}})", "name:1: keep: each point must have three numbers"},
+    {"keep(sphere(1), {points={{1, 0, 1/0}}})", "name:1: keep: each point must be a finite number"},
+    {"keep(sphere(1), {lines={{1, 0, 0}}})", "name:1: keep: "},
+    {"keep(sphere(1), {lines={{{1, 0, 0}}}})", "name:1: keep: a line must have two points or more"},
+    {"keep(sphere(1), {points={{1, 0, 0}}}):offset(1)", "name:1: offset: it moves the surface away from the points"},
+    {"warp(keep(sphere(1), {points={{1, 0, 0}}}), x, y, z)", "name:1: warp: it moves the surface away"},
+    {"morph(sphere(2), keep(sphere(1), {points={{1, 0, 0}}}), 0.5)", "name:1: morph: it moves the surface away"},
+    {"scale(keep(sphere(1), {points={{1, 0, 0}}}), 1e200):scale(1e200)", "keep: a point has coordinates beyond all numbers"},
+    {"repeat_grid(keep(sphere(1), {points={{1, 0, 0}, {0, 1, 0}}}), {step={3, 3, 3}, count={100, 100, 100}})",
+     "name: keep: at most 1000000 points and vertices, copies counted"},
     {"surface(1)", "name:1: surface: expected the name of a file"},
     {"surface('no/such/file.stl')", "name:1: surface: no/such/file.stl"},
     {"3", "name: the script yields a number; it must return a solid"},
@@ -327,6 +402,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(words_mean_what_the_manual_says), cmocka_unit_test(scripts_are_programs),
       cmocka_unit_test(examples_of_the_manual_run),      cmocka_unit_test(scripts_mean_the_same_on_every_run),
+      cmocka_unit_test(kept_goes_with_the_solid),        cmocka_unit_test(kept_is_found),
       cmocka_unit_test(mistakes_are_explained),          cmocka_unit_test(dangerous_words_are_absent),
       cmocka_unit_test(limits_end_runaway_scripts),      cmocka_unit_test(memory_limit_is_the_contexts),
       cmocka_unit_test(progress_can_cancel_a_script),
