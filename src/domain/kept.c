@@ -139,7 +139,8 @@ typedef struct visit {
 } visit;
 
 static laves_result fail_far(laves_error *error) {
-  return laves__fail(error, LAVES_ERROR_INPUT, "keep: a point has coordinates beyond all numbers once its solid is moved or scaled");
+  return laves__fail(error, LAVES_ERROR_INPUT,
+                     "keep: a point has coordinates beyond all numbers once its solid is moved or scaled");
 }
 
 static laves__vec3 image(const laves__affine *map, laves__vec3 p) { return v3_add(m3_mul(&map->m, p), map->t); }

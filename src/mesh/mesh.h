@@ -14,11 +14,11 @@ typedef struct laves__group {
 struct laves_mesh {
   laves_context *context;
   size_t vertex_count, tet_count, face_count;
-  laves__vec3 *points; /* [vertex_count] */
-  int32_t (*tets)[4];  /* [tet_count] */
-  int32_t (*faces)[3]; /* [face_count] boundary triangles, outwards */
-  int32_t *regions;    /* [tet_count] or NULL: all 1 */
-  int32_t *face_tags;  /* [face_count] or NULL: all 1 */
+  laves__vec3 *points;   /* [vertex_count] */
+  int32_t (*tets)[4];    /* [tet_count] */
+  int32_t (*faces)[3];   /* [face_count] boundary triangles, outwards */
+  int32_t *regions;      /* [tet_count] or NULL: all 1 */
+  int32_t *face_tags;    /* [face_count] or NULL: all 1 */
   int32_t *face_sources; /* [face_count] or NULL: not asked for */
   size_t lattice_tet_count;
   laves__group *groups;
