@@ -175,7 +175,9 @@ static double worst_touched(const laves__layer *layer, const laves__journal *j) 
   double worst = HUGE_VAL;
   for (size_t i = 0; i < j->tet_count; i++) {
     const int32_t t = j->tet[i].tet;
-    if (layer->tet[t][0] >= 0 && layer->quality[t] < worst) worst = layer->quality[t];
+    if (layer->tet[t][0] < 0) continue;
+    if (laves__is_stranded(layer, layer->tet[t], layer->quality[t]) && layer->quality[t] < j->tet[i].quality) return -HUGE_VAL;
+    if (layer->quality[t] < worst) worst = layer->quality[t];
   }
   return worst;
 }

@@ -111,10 +111,11 @@ static double quality_of(const flipping *f, const int32_t t[4]) {
   return laves__quality(f->measure, p, scale * scale * scale, 0);
 }
 
-static void add_fresh(change *c, int32_t a, int32_t b, int32_t d, int32_t e, double quality) {
+static void add_fresh(const flipping *f, change *c, int32_t a, int32_t b, int32_t d, int32_t e, double quality) {
   const int32_t t[4] = {a, b, d, e};
   for (int k = 0; k < 4; k++) c->fresh[c->fresh_count][k] = t[k];
   c->quality[c->fresh_count++] = quality;
+  if (laves__is_stranded(f->layer, t, quality)) quality = -HUGE_VAL;
   if (quality < c->worst) c->worst = quality;
 }
 
@@ -166,8 +167,8 @@ static void list_triangulation(const flipping *f, int32_t a, int32_t b, const ri
   const int j = t->apex[i][k];
   int32_t upper[4], lower[4];
   pair_of_tets(a, b, r, i, j, k, upper, lower);
-  add_fresh(c, upper[0], upper[1], upper[2], upper[3], quality_of(f, upper));
-  add_fresh(c, lower[0], lower[1], lower[2], lower[3], quality_of(f, lower));
+  add_fresh(f, c, upper[0], upper[1], upper[2], upper[3], quality_of(f, upper));
+  add_fresh(f, c, lower[0], lower[1], lower[2], lower[3], quality_of(f, lower));
   list_triangulation(f, a, b, r, t, i, j, c);
   list_triangulation(f, a, b, r, t, j, k, c);
 }
@@ -208,7 +209,7 @@ static bool without_edge(const flipping *f, int32_t a, int32_t b, change *c) {
   if (!(t.best[0][r.count - 1] > needed)) return false;
   if (r.open && !may_open(f, a, b, &r)) return false;
   list_triangulation(f, a, b, &r, &t, 0, r.count - 1, c);
-  return has_room(f, c);
+  return c->worst > needed && has_room(f, c);
 }
 
 /* Three tets around a new edge in the place of two at a face. */
@@ -230,7 +231,7 @@ static bool without_face(const flipping *f, int32_t tet, int corner, change *c) 
   measure_old(f, c);
   for (int k = 0; k < 3; k++) {
     const int32_t fresh[4] = {t[corner], b, t[face[k]], t[face[(k + 1) % 3]]};
-    add_fresh(c, fresh[0], fresh[1], fresh[2], fresh[3], quality_of(f, fresh));
+    add_fresh(f, c, fresh[0], fresh[1], fresh[2], fresh[3], quality_of(f, fresh));
     if (!(c->worst > fmax(c->before + least_gain, LAVES__FLAT))) return false;
   }
   return has_room(f, c);

@@ -78,6 +78,16 @@ static inline double laves__quality(const laves__measure *m, const laves__vec3 p
   return q > LAVES__FLAT ? q : LAVES__FLAT;
 }
 
+/* Whether a tet is beyond help: bad, and so deep that none of its vertices is one of those that do the work. No operation may
+ * leave one, though the worst be better than before: it would stay. */
+#define LAVES__DEEP_FLOOR 0.8
+static inline bool laves__is_stranded(const laves__layer *layer, const int32_t tet[4], double quality) {
+  if (quality >= LAVES__DEEP_FLOOR) return false;
+  for (int k = 0; k < 4; k++)
+    if (layer->depth[tet[k]] < LAVES__DEPTH_MOVES) return false;
+  return true;
+}
+
 static inline double laves__layer_quality(const laves__measure *m, const laves__layer *layer, int32_t tet) {
   laves__vec3 p[4];
   laves__layer_points(layer, tet, p);
