@@ -19,6 +19,9 @@ typedef struct laves__mat3 {
 } laves__mat3;
 
 static inline laves__vec3 v3(double x, double y, double z) { return (laves__vec3){x, y, z}; }
+/* Coordinate i, 0 to 2: to read, and to write. An index from the address of x would be undefined, and compilers use that. */
+static inline double v3_at(laves__vec3 a, int i) { return i == 0 ? a.x : i == 1 ? a.y : a.z; }
+static inline double *v3_slot(laves__vec3 *a, int i) { return i == 0 ? &a->x : i == 1 ? &a->y : &a->z; }
 static inline laves__vec3 v3_add(laves__vec3 a, laves__vec3 b) { return v3(a.x + b.x, a.y + b.y, a.z + b.z); }
 static inline laves__vec3 v3_sub(laves__vec3 a, laves__vec3 b) { return v3(a.x - b.x, a.y - b.y, a.z - b.z); }
 static inline laves__vec3 v3_scale(laves__vec3 a, double s) { return v3(a.x * s, a.y * s, a.z * s); }

@@ -335,7 +335,7 @@ static int look_beside(laves__crease_search *s, const laves__code *code, laves__
   int count = 0;
   for (int k = 0; k < BESIDE; k++) {
     laves__vec3 from = foot;
-    (&from.x)[k / 2] += k % 2 ? away : -away;
+    *v3_slot(&from, k / 2) += k % 2 ? away : -away;
     if (find_foot(s, code, from, 2 * away, &feet[count]) && holds(around, feet[count].p))
       count += label_foot(s, code, &feet[count]);
   }

@@ -31,7 +31,7 @@ bool laves__search_goes_on(laves__crease_search *s) {
 
 static bool contains(laves__box3 box, laves__vec3 p, double by) {
   for (int i = 0; i < 3; i++)
-    if (!((&p.x)[i] - by >= (&box.lower.x)[i] && (&p.x)[i] + by <= (&box.upper.x)[i])) return false;
+    if (!(v3_at(p, i) - by >= v3_at(box.lower, i) && v3_at(p, i) + by <= v3_at(box.upper, i))) return false;
   return true;
 }
 

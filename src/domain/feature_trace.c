@@ -413,8 +413,8 @@ static void note_weak(laves__crease_search *s, const spot *a) {
 static bool has_left(const laves__crease_search *s, laves__vec3 p) {
   const laves__box3 box = s->all->solid.bounds;
   for (int i = 0; i < 3; i++)
-    if (!(fabs((&p.x)[i] - 0.5 * ((&box.lower.x)[i] + (&box.upper.x)[i])) <
-          0.5 * ((&box.upper.x)[i] - (&box.lower.x)[i]) + s->all->size))
+    if (!(fabs(v3_at(p, i) - 0.5 * (v3_at(box.lower, i) + v3_at(box.upper, i))) <
+          0.5 * (v3_at(box.upper, i) - v3_at(box.lower, i)) + s->all->size))
       return true;
   return false;
 }

@@ -44,8 +44,8 @@ static double proportional_parameter(double x) {
 static laves__box3 mapped(const search *s, laves__box3 cell, double (*map)(double)) {
   for (int i = 0; i < 3; i++) {
     if (!s->divided_in_t[i]) continue;
-    (&cell.lower.x)[i] = map((&cell.lower.x)[i]);
-    (&cell.upper.x)[i] = map((&cell.upper.x)[i]);
+    *v3_slot(&cell.lower, i) = map(v3_at(cell.lower, i));
+    *v3_slot(&cell.upper, i) = map(v3_at(cell.upper, i));
   }
   return cell;
 }
@@ -85,7 +85,7 @@ static bool shrink(search *s, laves__box3 *box, bool *gain) {
   visit(s, before, 0);
   *gain = false;
   for (int i = 0; i < 3; i++) {
-    const double old = (&before.upper.x)[i] - (&before.lower.x)[i], now = (&s->hull.upper.x)[i] - (&s->hull.lower.x)[i];
+    const double old = v3_at(before.upper, i) - v3_at(before.lower, i), now = v3_at(s->hull.upper, i) - v3_at(s->hull.lower, i);
     if (now < (1 - worthwhile) * old) *gain = true;
   }
   *box = to_coordinates(s, s->hull);
@@ -95,7 +95,7 @@ static bool shrink(search *s, laves__box3 *box, bool *gain) {
 /* Marks the axes that are infinite; whether there are any. */
 static bool mark_endless(search *s, laves__box3 box) {
   bool any = false;
-  for (int i = 0; i < 3; i++) any |= s->divided_in_t[i] = isinf((&box.lower.x)[i]) || isinf((&box.upper.x)[i]);
+  for (int i = 0; i < 3; i++) any |= s->divided_in_t[i] = isinf(v3_at(box.lower, i)) || isinf(v3_at(box.upper, i));
   return any;
 }
 
@@ -117,7 +117,8 @@ static bool shrink_from_horizon(search *s, laves__box3 *box) {
   const bool some = shrink(s, box, &gain);
   const double horizon = proportional_coordinate(1);
   for (int i = 0; i < 3; i++)
-    if (s->divided_in_t[i] && ((&box->lower.x)[i] <= -horizon || (&box->upper.x)[i] >= horizon)) (&box->upper.x)[i] = INFINITY;
+    if (s->divided_in_t[i] && (v3_at(box->lower, i) <= -horizon || v3_at(box->upper, i) >= horizon))
+      *v3_slot(&box->upper, i) = INFINITY;
   s->in_proportion = false;
   s->depth = ROUND_DEPTH;
   return some;

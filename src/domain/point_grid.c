@@ -29,7 +29,7 @@ static size_t list_of(const laves__point_grid *g, const int64_t cell[3]) {
 /* Cells beyond 2^50 widths share their last coordinate: slow there, never wrong. */
 static void cell_of(const laves__point_grid *g, laves__vec3 p, int64_t cell[3]) {
   const double limit = 1125899906842624.0;
-  for (int i = 0; i < 3; i++) cell[i] = (int64_t)floor_of(min_of(max_of((&p.x)[i] / g->width, -limit), limit));
+  for (int i = 0; i < 3; i++) cell[i] = (int64_t)floor_of(min_of(max_of(v3_at(p, i) / g->width, -limit), limit));
 }
 
 static void link(laves__point_grid *g, size_t i) {

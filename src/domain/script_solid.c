@@ -186,7 +186,7 @@ static int repeat_grid(lua_State *L) {
     const laves__shape row = all;
     for (int i = 1; i < (int)v[3 + axis] && all.node != LAVES__NO_NODE; i++) {
       laves__vec3 by = v3(0, 0, 0);
-      (&by.x)[axis] = v[axis] * i;
+      *v3_slot(&by, axis) = v[axis] * i;
       const laves__shape copy = laves__shape_move(store(L), &row, by);
       all = laves__shape_boolean(store(L), LAVES__UNION, &all, &copy);
     }

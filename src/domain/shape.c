@@ -127,7 +127,7 @@ static laves__box3 box_image(laves__box3 box, const laves__affine *map) {
   double *new_lower = &r.lower.x, *new_upper = &r.upper.x;
   for (int i = 0; i < 3; i++) {
     const double *row = &map->m.row[i].x;
-    new_lower[i] = new_upper[i] = (&map->t.x)[i];
+    new_lower[i] = new_upper[i] = v3_at(map->t, i);
     for (int k = 0; k < 3; k++) {
       new_lower[i] += times_bound(row[k], row[k] > 0 ? lower[k] : upper[k]);
       new_upper[i] += times_bound(row[k], row[k] > 0 ? upper[k] : lower[k]);
@@ -193,8 +193,8 @@ laves__shape laves__shape_scale(E *e, const laves__shape *a, laves__vec3 factors
   laves__affine map = laves__affine_identity(), inverse = map;
   const double x = fabs(factors.x), y = fabs(factors.y), z = fabs(factors.z);
   for (int i = 0; i < 3; i++) {
-    (&map.m.row[i].x)[i] = (&factors.x)[i];
-    (&inverse.m.row[i].x)[i] = 1 / (&factors.x)[i];
+    *v3_slot(&map.m.row[i], i) = v3_at(factors, i);
+    *v3_slot(&inverse.m.row[i], i) = 1 / v3_at(factors, i);
   }
   const double least = min_of(x, min_of(y, z)), most = max_of(x, max_of(y, z));
   laves__shape r = transformed(e, a, &map, &inverse, least, most);
@@ -206,6 +206,6 @@ laves__shape laves__shape_scale(E *e, const laves__shape *a, laves__vec3 factors
 laves__shape laves__shape_mirror(E *e, const laves__shape *a, laves__vec3 normal) {
   const laves__vec3 n = v3_unit(normal);
   laves__affine map = laves__affine_identity();
-  for (int i = 0; i < 3; i++) map.m.row[i] = v3_mad(map.m.row[i], n, -2 * (&n.x)[i]);
+  for (int i = 0; i < 3; i++) map.m.row[i] = v3_mad(map.m.row[i], n, -2 * v3_at(n, i));
   return transformed(e, a, &map, &map, 1, 1);
 }

@@ -111,10 +111,10 @@ laves__shape laves__shape_halfspace(E *e, laves__vec3 normal, double offset) {
   laves__shape s = laves__shape_of_node(plus_(e, sum, -offset));
   s.exact = true;
   for (int i = 0; i < 3; i++) { /* along an axis one side is bounded */
-    const double along = (&n.x)[i];
+    const double along = v3_at(n, i);
     if (fabs(along) != 1) continue;
     s.slope = 1;
-    *(along > 0 ? &(&s.box.upper.x)[i] : &(&s.box.lower.x)[i]) = offset * along;
+    *(along > 0 ? v3_slot(&s.box.upper, i) : v3_slot(&s.box.lower, i)) = offset * along;
   }
   return s;
 }

@@ -292,7 +292,7 @@ static laves__interval operand_range(const laves__code *code, size_t i, int k, l
   if (source == LAVES__FROM_CONSTANT)
     return (laves__interval){code->tape.instructions[i].constant, code->tape.instructions[i].constant};
   const int axis = source - LAVES__FROM_X;
-  return (laves__interval){(&box.lower.x)[axis], (&box.upper.x)[axis]};
+  return (laves__interval){v3_at(box.lower, axis), v3_at(box.upper, axis)};
 }
 
 /* Drops what the root does not depend on, and moves the rest together. */

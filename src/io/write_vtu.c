@@ -28,7 +28,7 @@ typedef struct grid {
 
 /* ---- arrays, item by item; an item is one number, for points one coordinate ---- */
 
-static double coordinate(const grid *g, size_t i) { return (&g->mesh->points[0].x)[i]; }
+static double coordinate(const grid *g, size_t i) { return v3_at(g->mesh->points[i / 3], (int)(i % 3)); }
 
 static int64_t corner(const grid *g, size_t i) {
   const size_t tet_corners = 4 * g->mesh->tet_count;

@@ -151,7 +151,7 @@ static laves_result find_places(laves_context *context, const laves__oracle *ora
   const double longest = fmax(widths.x, fmax(widths.y, widths.z));
   grid g = {.oracle = oracle, .lower = oracle->bounds.lower, .points = points};
   g.side = fmax(*spacing, longest / GRID_MAX);
-  for (int i = 0; i < 3; i++) g.cells[i] = (size_t)fmin(GRID_MAX, ceil((&widths.x)[i] / g.side) + 1);
+  for (int i = 0; i < 3; i++) g.cells[i] = (size_t)fmin(GRID_MAX, ceil(v3_at(widths, i) / g.side) + 1);
   const laves_result result = scan_grid(context, &g, error);
   *spacing = g.side;
   *count = g.count;

@@ -55,8 +55,8 @@ static void check_solid(const laves_domain *domain) {
     const laves__vec3 step = v3(i % 3, i / 3 % 3, i / 9);
     laves__box3 cell;
     for (int k = 0; k < 3; k++) {
-      (&cell.lower.x)[k] = (&o->bounds.lower.x)[k] + (&step.x)[k] / 3 * (&widths.x)[k];
-      (&cell.upper.x)[k] = (&cell.lower.x)[k] + (&widths.x)[k] / 3;
+      *v3_slot(&cell.lower, k) = v3_at(o->bounds.lower, k) + v3_at(step, k) / 3 * v3_at(widths, k);
+      *v3_slot(&cell.upper, k) = v3_at(cell.lower, k) + v3_at(widths, k) / 3;
     }
     check_box(domain, cell);
   }

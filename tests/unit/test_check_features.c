@@ -93,8 +93,8 @@ static bool project(const void *self, laves__vec3 p, double reach, uint32_t *hin
   (void)hint;
   *foot = p;
   *normal = v3(0, 0, 0);
-  (&foot->x)[side / 2] = side % 2 ? SIDE : 0;
-  (&normal->x)[side / 2] = side % 2 ? 1 : -1;
+  *v3_slot(foot, side / 2) = side % 2 ? SIDE : 0;
+  *v3_slot(normal, side / 2) = side % 2 ? 1 : -1;
   return true;
 }
 

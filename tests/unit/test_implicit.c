@@ -50,7 +50,8 @@ static const char *const solids[] = {
 
 static laves__vec3 point_in(laves__box3 box, uint64_t *seed) {
   laves__vec3 p;
-  for (int i = 0; i < 3; i++) (&p.x)[i] = (&box.lower.x)[i] + random_unit(seed) * ((&box.upper.x)[i] - (&box.lower.x)[i]);
+  for (int i = 0; i < 3; i++)
+    *v3_slot(&p, i) = v3_at(box.lower, i) + random_unit(seed) * (v3_at(box.upper, i) - v3_at(box.lower, i));
   return p;
 }
 
@@ -149,10 +150,11 @@ static void bounds_hold_the_solid_closely(void **state) {
     }
     free(points);
     for (int i = 0; i < 3; i++) {
-      const double slack = 1e-9 * (&widths.x)[i];
-      assert_true((&found.lower.x)[i] >= (&o->bounds.lower.x)[i] - slack);
-      assert_true((&found.upper.x)[i] <= (&o->bounds.upper.x)[i] + slack);
-      if ((&found.upper.x)[i] - (&found.lower.x)[i] < 0.85 * (&widths.x)[i]) fail_msg("%s: loose along axis %d", solids[k], i);
+      const double slack = 1e-9 * v3_at(widths, i);
+      assert_true(v3_at(found.lower, i) >= v3_at(o->bounds.lower, i) - slack);
+      assert_true(v3_at(found.upper, i) <= v3_at(o->bounds.upper, i) + slack);
+      if (v3_at(found.upper, i) - v3_at(found.lower, i) < 0.85 * v3_at(widths, i))
+        fail_msg("%s: loose along axis %d", solids[k], i);
     }
     for (int i = 0; i < 3000; i++) {
       const laves__vec3 p = point_in(larger, &seed);

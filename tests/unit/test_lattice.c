@@ -37,8 +37,9 @@ static void lattice_covers_its_bounds(void **state) {
   for (int axis = 0; axis < 3; axis++) {
     const double first = l.lower[axis] * LAVES__CELL_SIDE;
     const double last = (l.lower[axis] + l.bricks[axis] * LAVES__BRICK_SIDE) * LAVES__CELL_SIDE;
-    assert_true(first + LAVES__CELL_SIDE <= (&bounds.lower.x)[axis] && last - LAVES__CELL_SIDE >= (&bounds.upper.x)[axis]);
-    assert_true(l.bricks[axis] <= ((&bounds.upper.x)[axis] - (&bounds.lower.x)[axis]) / LAVES__CELL_SIDE / LAVES__BRICK_SIDE + 3);
+    assert_true(first + LAVES__CELL_SIDE <= v3_at(bounds.lower, axis) && last - LAVES__CELL_SIDE >= v3_at(bounds.upper, axis));
+    assert_true(l.bricks[axis] <=
+                (v3_at(bounds.upper, axis) - v3_at(bounds.lower, axis)) / LAVES__CELL_SIDE / LAVES__BRICK_SIDE + 3);
     assert_int_equal(l.lower[axis] % LAVES__BRICK_SIDE, 0);
   }
   assert_int_equal(laves__lattice_cell(&l, l.lower[0] - 1, l.lower[1], l.lower[2]), LAVES__OUT);

@@ -65,7 +65,7 @@ static void every_format(void **state) {
     for (size_t i = 0; i < LINE_FILE_LINES; i++) assert_true(has_line(&lines, expected[i]));
     for (size_t i = 0; i < lines.list.node_count; i++) {
       const laves__vec3 p = lines.points[lines.list.node[i]], q = line_file_point((int)p.x);
-      assert_true(p.x == q.x && p.y == q.y && p.z == q.z);
+      if (!(p.x == q.x && p.y == q.y && p.z == q.z)) fail_msg("kind %d, %s: point %g %g %g", kind, f.name, p.x, p.y, p.z);
     }
     laves__lines_free(&lines);
     free(f.bytes);

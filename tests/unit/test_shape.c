@@ -74,7 +74,7 @@ static S random_solid(E *e, uint64_t *seed, int depth) {
 /* Largest coordinate difference to the box. */
 static double box_distance(laves__box3 box, laves__vec3 p) {
   double d = 0;
-  for (int i = 0; i < 3; i++) d = fmax(d, fmax((&box.lower.x)[i] - (&p.x)[i], (&p.x)[i] - (&box.upper.x)[i]));
+  for (int i = 0; i < 3; i++) d = fmax(d, fmax(v3_at(box.lower, i) - v3_at(p, i), v3_at(p, i) - v3_at(box.upper, i)));
   return d;
 }
 
@@ -121,7 +121,7 @@ static void distances_and_volumes_are_exact(void **state) {
     const laves__vec3 widths = v3_sub(s.box.upper, s.box.lower);
     for (int i = 0; i < SAMPLES && laves__box3_is_finite(s.box); i++) {
       laves__vec3 p;
-      for (int k = 0; k < 3; k++) (&p.x)[k] = (&s.box.lower.x)[k] + (&widths.x)[k] * random_unit(&seed);
+      for (int k = 0; k < 3; k++) *v3_slot(&p, k) = v3_at(s.box.lower, k) + v3_at(widths, k) * random_unit(&seed);
       const laves__dual d = laves__tape_gradient(&tape, p);
       inside += d.value < 0;
       if (!s.exact) continue;

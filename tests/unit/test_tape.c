@@ -105,13 +105,13 @@ static void gradients_equal_differences(void **state) {
         for (int s = 0; s < 3; s++) {
           const double h = 1e-6 * (1 << s);
           laves__vec3 a = p, b = p;
-          (&a.x)[axis] -= h;
-          (&b.x)[axis] += h;
+          *v3_slot(&a, axis) -= h;
+          *v3_slot(&b, axis) += h;
           slope[s] = (reference_value(&r.e, r.root, b) - reference_value(&r.e, r.root, a)) / (2 * h);
         }
-        const double size = 1 + fabs(slope[0]) + fabs(value) + fabs((&d.gradient.x)[axis]);
+        const double size = 1 + fabs(slope[0]) + fabs(value) + fabs(v3_at(d.gradient, axis));
         if (!(fabs(slope[0] - slope[1]) + fabs(slope[1] - slope[2]) < 1e-5 * size) || !(size < 1e4)) continue;
-        const double gradient = (&d.gradient.x)[axis];
+        const double gradient = v3_at(d.gradient, axis);
         if (!(fabs(gradient - slope[0]) <= 1e-4 * size)) print_message("seed %d: %g, %g\n", (int)seed, gradient, slope[0]);
         assert_close(gradient, slope[0], 1e-4 * size);
         compared++;
