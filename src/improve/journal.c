@@ -39,7 +39,7 @@ bool laves__journal_star(laves__journal *j, const laves__layer *layer, int32_t v
       !laves__grow(j->context, &j->pool, &j->pool_capacity, j->pool_count + (size_t)star->count, sizeof *j->pool))
     return false;
   j->star[j->star_count++] = (laves__star_entry){v, star->count, j->pool_count};
-  memcpy(j->pool + j->pool_count, star->tet, (size_t)star->count * sizeof *star->tet);
+  if (star->count) memcpy(j->pool + j->pool_count, star->tet, (size_t)star->count * sizeof *star->tet);
   j->pool_count += (size_t)star->count;
   return true;
 }
