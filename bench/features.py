@@ -7,7 +7,6 @@ and judged from their files by `laves check --features`, on one thread.
 import json
 import math
 import os
-import statistics
 import tempfile
 
 import parts
@@ -98,15 +97,9 @@ def verdict(met):
 # ---- solids with creases ----
 
 
-def improve_cost(bench, folder, solid, tets, repeat, *more):
-    """Median CPU seconds of improvement a boundary vertex, of meshes as they are made: microseconds; None when none is made."""
-    costs = []
-    for _ in range(repeat):
-        facts = make(bench, folder, solid, ["--tets", tets, *more], certificate=os.path.join(folder, "made.json"))
-        if not facts:
-            return None
-        costs.append(1e6 * facts["cpu_seconds"].get("improve", 0) / boundary_vertices(facts))
-    return statistics.median(costs)
+def improve_cost(facts):
+    """CPU microseconds of improvement a boundary vertex; None of a mesh that is not there."""
+    return 1e6 * facts["cpu_seconds"].get("improve", 0) / boundary_vertices(facts) if facts else None
 
 
 def is_free(row):
@@ -180,12 +173,10 @@ def measure_creases(bench, folder, rows, notes):
               f"{'corners':>9} {'spur':>5} {'across':>6} {'dist %':>7} {'cost':>5}")
     for tets in TETS[:1] if bench.options.quick else TETS:
         for name, path in crease_solids(bench, folder):
-            plain = cost = None
-            if choice:
-                repeat = 3 if tets < 100000 else 1
-                plain = improve_cost(bench, folder, path, tets, repeat, "--features", "none")
-                cost = improve_cost(bench, folder, path, tets, repeat)
-            made = make(bench, folder, path, ["--tets", tets])
+            whole = os.path.join(folder, "made.json")
+            plain = improve_cost(make(bench, folder, path, ["--tets", tets, "--features", "none"], whole)) if choice else None
+            made = make(bench, folder, path, ["--tets", tets], whole)
+            cost = improve_cost(made) if choice else None
             facts = judge(bench, folder, path) if made else None
             if not facts:
                 rows.append({"part": "failed", "name": f"{name} at {tets:,} tets"})

@@ -31,6 +31,8 @@ enum {
  * few passes of contraction, and no more patience. */
 static const double crowd = 0.03;
 static const size_t crowd_min = 2000; /* tets; fewer never are a crowd */
+/* Where creases crowd, the thorough passes are for what is far outside: they can't cure the rest, and spoil more than they mend. */
+static const size_t crease_crowd_min = 500; /* tets */
 /* Where even more than this share is bad after one pass, the solid is noise at this size: smoothing goes on for one more pass
  * only, and only tets far outside get a contraction. */
 static const double rough_share = 0.2;
@@ -326,11 +328,11 @@ static void peel_all(work *w) {
   }
 }
 
-/* Whether the bad tets are many, and more than a share of the layer. */
-static bool is_crowded(const work *w, double share) {
+/* Whether the bad tets are more than `least`, and more than a share of the layer. */
+static bool is_crowded(const work *w, double share, size_t least) {
   size_t bad = 0;
   for (size_t t = 0; t < w->layer->tet_count; t++) bad += is_bad(w, (int32_t)t);
-  return bad > crowd_min && (double)bad > share * (double)w->layer->tet_count;
+  return bad > least && (double)bad > share * (double)w->layer->tet_count;
 }
 
 /* Patience is new for all that remains. */
@@ -345,17 +347,17 @@ static void forget(work *w) {
 static laves_result mend_tiling(work *w, bool brief, laves_error *error) {
   if (brief) w->admit = brief_admit;
   laves_result result = run_passes(w, 1, 1, error);
-  const bool rough = brief || is_crowded(w, rough_share);
+  const bool rough = brief || is_crowded(w, rough_share, crowd_min);
   if (result == LAVES_OK) result = run_passes(w, rough ? 1 : SMOOTH_PASSES - 1, 1, error);
   if (result == LAVES_OK) settle_all(w, settle_floor);
-  const bool crowded = is_crowded(w, crowd);
+  const bool crowded = is_crowded(w, crowd, crowd_min);
   w->thin = has_thin_walls(w);
   w->rounds = 1;
   if (rough) w->admit = rough_admit;
   if (result == LAVES_OK) result = run_passes(w, rough ? 1 : crowded ? CROWD_PASSES : CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) peel_all(w);
   w->rounds = THOROUGH_ROUNDS;
-  w->admit = thorough_below;
+  w->admit = w->layer->hold && is_crowded(w, crowd, crease_crowd_min) ? far_outside : thorough_below;
   forget(w);
   if (result == LAVES_OK && !crowded && !rough) result = run_passes(w, CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) peel_all(w);
@@ -367,10 +369,10 @@ static laves_result mend_tiling(work *w, bool brief, laves_error *error) {
 static laves_result mend_graded(work *w, laves_error *error) {
   laves_result result = run_passes(w, FLIP_PASSES, 2, error);
   if (result == LAVES_OK) settle_all(w, settle_floor);
-  const bool crowded = is_crowded(w, graded_crowd);
+  const bool crowded = is_crowded(w, graded_crowd, crowd_min);
   w->rounds = 1;
   w->admit = far_outside;
-  const bool rough = is_crowded(w, graded_crowd);
+  const bool rough = is_crowded(w, graded_crowd, crowd_min);
   w->thin = has_thin_walls(w);
   if (result == LAVES_OK) result = run_passes(w, rough ? 1 : CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) peel_all(w);
