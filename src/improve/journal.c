@@ -62,7 +62,7 @@ void laves__journal_undo(laves__journal *j, laves__layer *layer) {
     laves__star *star = &layer->star[e->vertex];
     LAVES_ASSERT(e->count <= star->capacity);
     star->count = e->count;
-    memcpy(star->tet, j->pool + e->first, (size_t)e->count * sizeof *star->tet);
+    if (e->count) memcpy(star->tet, j->pool + e->first, (size_t)e->count * sizeof *star->tet);
   }
   laves__journal_clear(j);
 }

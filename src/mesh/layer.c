@@ -169,7 +169,7 @@ bool laves__star_add(laves_context *context, laves__star *star, int32_t tet) {
     const int32_t larger = 2 * star->capacity + STAR_SLACK;
     int32_t *block = laves__alloc(context, (size_t)larger, sizeof *block);
     if (!block) return false;
-    memcpy(block, star->tet, (size_t)star->count * sizeof *block);
+    if (star->count) memcpy(block, star->tet, (size_t)star->count * sizeof *block);
     if (star->own_block) laves__free(context, star->tet, (size_t)star->capacity, sizeof *star->tet);
     *star = (laves__star){block, star->count, larger, true};
   }
