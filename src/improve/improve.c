@@ -31,8 +31,7 @@ enum {
  * few passes of contraction, and no more patience. */
 static const double crowd = 0.03;
 static const size_t crowd_min = 2000; /* tets; fewer never are a crowd */
-/* Where creases crowd, the thorough passes are for what is far outside: they can't cure the rest, and spoil more than they mend.
- */
+/* Where creases crowd, the thorough passes are for what is far outside: they can't cure the rest, and spoil others. */
 static const size_t crease_crowd_min = 500; /* tets */
 /* Where even more than this share is bad after one pass, the solid is noise at this size: smoothing goes on for one more pass
  * only, and only tets far outside get a contraction. */
