@@ -183,7 +183,7 @@ laves_result laves__regions_of_parts(laves_context *context, const laves_domain 
   labelling g = {.context = context, .mesh = mesh, .origin = domain->oracle.origin};
   laves_result result = LAVES_OK;
   bool any_rest = false, *used = NULL;
-  g.parts = laves__parts_create(domain->oracle.surface);
+  g.parts = laves__parts_create(domain->oracle.surface, false);
   if (!g.parts) return laves__fail_memory(context, error);
   counts->parts = laves__parts_count(g.parts);
   if (counts->parts < 2) {

@@ -117,6 +117,36 @@ typedef struct laves_domain laves_domain;
 LAVES_API laves_result laves_domain_from_file(laves_context *context, const char *path, laves_domain **domain,
                                               laves_error *error);
 
+/// Places of the defects of a surface; filled by laves_domain_from_file_with() and laves_domain_from_triangles_with(), whether
+/// they succeed or refuse the surface. Belongs to a context.
+typedef struct laves_defects laves_defects;
+
+/// What the parts of a surface mean that lie within one another or cross. A part is what hangs together over edges, or what has a
+/// tag of its own and is closed by itself; only closed parts count. DIRECTION: as faces are directed: a part that faces inwards
+/// within another is a hollow of it, one that faces outwards adds nothing; a part that faces inwards by itself is turned.
+/// UNION: all that any part encloses is solid. NESTED: parts within an odd number of others are hollows, the rest is solid,
+/// whatever their faces' directions. Parts that cross are united by all three.
+typedef enum laves_overlap { LAVES_OVERLAP_DIRECTION, LAVES_OVERLAP_UNION, LAVES_OVERLAP_NESTED } laves_overlap;
+
+/// How a triangle surface is read as a solid. From laves_surface_options_default(), then changed.
+typedef struct laves_surface_options {
+  double winding;          ///< the solid is where the surface winds round a point more often than this; default 0.5, range
+                           ///< 0.05..100, at least 0.05 off whole numbers, which are what closed surfaces yield. 1.5: where two
+                           ///< closed parts overlap; below 0.5, the caps of open surfaces stand further out, above it further in.
+  bool close_holes;        ///< false: refuse surfaces that stay open once cracks are mended; default true: {winding number =
+                           ///< `winding`} closes the holes
+  laves_overlap overlap;   ///< default LAVES_OVERLAP_DIRECTION
+  laves_defects *defects;  ///< out: emptied, then filled with the place of each defect; NULL, the default: not asked for
+  uint32_t cookie;         ///< set by laves_surface_options_default(), checked by laves_domain_from_..._with()
+} laves_surface_options;
+
+LAVES_API laves_surface_options laves_surface_options_default(void);
+
+/// As laves_domain_from_file(), with a say in how a surface is read as a solid.
+/// @param options  copied; NULL: the defaults. With a Lua script they must be NULL or the defaults (LAVES_ERROR_OPTION).
+LAVES_API laves_result laves_domain_from_file_with(laves_context *context, const char *path, const laves_surface_options *options,
+                                                   laves_domain **domain, laves_error *error);
+
 /// Builds an implicit solid from a Lua 5.4 expression such as "sphere(1) - cylinder{r=0.4}"; docs/implicit.md lists
 /// the vocabulary. Runs in a sandbox: no files but surface leaves, no processes, bounded steps and memory.
 LAVES_API laves_result laves_domain_from_expression(laves_context *context, const char *text, laves_domain **domain,
@@ -129,6 +159,13 @@ LAVES_API laves_result laves_domain_from_expression(laves_context *context, cons
 LAVES_API laves_result laves_domain_from_triangles(laves_context *context, const double *points, size_t point_count,
                                                    const uint32_t *triangles, size_t triangle_count, const int32_t *tags,
                                                    laves_domain **domain, laves_error *error);
+
+/// As laves_domain_from_triangles(), with a say in how the surface is read as a solid.
+/// @param options  copied; NULL: the defaults
+LAVES_API laves_result laves_domain_from_triangles_with(laves_context *context, const double *points, size_t point_count,
+                                                        const uint32_t *triangles, size_t triangle_count, const int32_t *tags,
+                                                        const laves_surface_options *options, laves_domain **domain,
+                                                        laves_error *error);
 
 /// A solid given by a function of the caller's.
 typedef struct laves_function {
@@ -191,6 +228,12 @@ typedef struct laves_domain_info {
   bool closed;             ///< every edge is used as often forwards as backwards
   bool turned;             ///< the input was inside out and was turned
   bool winding;            ///< inside is decided by the generalised winding number
+  double winding_level;    ///< which it exceeds there (laves_surface_options.winding)
+  laves_overlap overlap;   ///< laves_surface_options.overlap
+  size_t open_edges_left;  ///< edges that stay open once cracks are mended, each for every use too many: holes are closed there
+  size_t crossing_parts;   ///< closed parts that cross another
+  size_t nested_parts;     ///< closed parts that lie within others
+  size_t hollow_parts;     ///< of these: hollows
   size_t defects[LAVES_DEFECT_COUNT];
   double defect_place[LAVES_DEFECT_COUNT][3];  ///< a place where the first of each kind stands
   int tag_count;                               ///< named parts, of implicit solids too; see laves_domain_tag_name()
@@ -199,6 +242,27 @@ typedef struct laves_domain_info {
 LAVES_API void laves_domain_get_info(const laves_domain *domain, laves_domain_info *info);
 /// Name of a tag (STL solid, OBJ group, part of a script, ...), or NULL when index is not in [0, tag_count). Owned by the domain.
 LAVES_API const char *laves_domain_tag_name(const laves_domain *domain, int index);
+
+/// Where a defect is: a point, an edge or a face, in input coordinates.
+typedef struct laves_defect_place {
+  laves_defect kind;
+  int corner_count;      ///< 1: a point, 2: an edge or segment, 3: a face
+  double corners[3][3];  ///< [corner_count]
+} laves_defect_place;
+
+/// @param defects  out: without places; owned by the caller, free with laves_defects_free(); NULL on failure
+LAVES_API laves_result laves_defects_create(laves_context *context, laves_defects **defects, laves_error *error);
+LAVES_API void laves_defects_free(laves_defects *defects);
+/// How many places there are, at least one for each defect that laves_domain_info counts: for a crossing the segment and its two
+/// faces (one face only once, of however many crossings it is a part).
+LAVES_API size_t laves_defects_count(const laves_defects *defects);
+/// @param index  in [0, count)    @param place  out
+LAVES_API void laves_defects_get(const laves_defects *defects, size_t index, laves_defect_place *place);
+/// Writes them as points, lines and faces with a colour for each kind: .ply (text; vertex, edge and face elements), .obj (a group
+/// for each kind; colours behind coordinates), or .vtp (VTK; cell arrays "defect", a laves_defect, and "color").
+/// @return LAVES_OK, LAVES_ERROR_OPTION (the extension), LAVES_ERROR_WRITE, LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED
+LAVES_API laves_result laves_defects_write(laves_context *context, const laves_defects *defects, const char *path,
+                                           laves_error *error);
 
 typedef enum laves_thin_kind { LAVES_THIN_WALL, LAVES_THIN_GAP } laves_thin_kind;
 

@@ -52,23 +52,40 @@ static laves_result build_script(laves_context *context, const char *path, const
   return result;
 }
 
-static laves_result build_surface(laves_context *context, const char *path, const char *bytes, size_t length, laves_domain *made,
-                                  laves_error *error) {
+static laves_result build_surface(laves_context *context, const char *path, const char *bytes, size_t length,
+                                  const laves_surface_options *options, laves_domain *made, laves_error *error) {
   laves__surface_input input = {0};
   const laves_result result = laves__surface_parse(context, bytes, length, path, &input, error);
-  return result == LAVES_OK ? laves__surface_build(context, &input, made, error) : result;
+  return result == LAVES_OK ? laves__surface_build(context, &input, options, made, error) : result;
+}
+
+/* A script's surfaces have the defaults. */
+static laves_result check_for_script(const laves_surface_options *options, laves_error *error) {
+  const laves_surface_options usual = laves_surface_options_default();
+  if (!options || (options->winding == usual.winding && options->close_holes && options->overlap == usual.overlap))
+    return LAVES_OK;
+  return laves__fail(error, LAVES_ERROR_OPTION,
+                     "how a surface is read as a solid can be told for a surface file only, not for a script");
 }
 
 laves_result laves_domain_from_file(laves_context *context, const char *path, laves_domain **domain, laves_error *error) {
+  return laves_domain_from_file_with(context, path, NULL, domain, error);
+}
+
+laves_result laves_domain_from_file_with(laves_context *context, const char *path, const laves_surface_options *options,
+                                         laves_domain **domain, laves_error *error) {
   *domain = NULL;
+  laves_result result = options ? laves__surface_options_check(options, error) : LAVES_OK;
+  if (result == LAVES_OK && ends_with_lua(path)) result = check_for_script(options, error);
+  if (result != LAVES_OK) return result;
   laves_domain *made = domain_create(context);
   if (!made) return laves__fail_memory(context, error);
   char *bytes = NULL;
   size_t length = 0;
-  laves_result result = laves__file_read(context, path, &bytes, &length, error);
+  result = laves__file_read(context, path, &bytes, &length, error);
   if (result == LAVES_OK) {
     result = ends_with_lua(path) ? build_script(context, path, bytes, length, made, error)
-                                 : build_surface(context, path, bytes, length, made, error);
+                                 : build_surface(context, path, bytes, length, options, made, error);
     laves__free(context, bytes, length + 1, 1);
   }
   return finish(result, made, domain);
@@ -106,13 +123,19 @@ static laves_result copy_triangles(laves_context *context, const double *points,
 laves_result laves_domain_from_triangles(laves_context *context, const double *points, size_t point_count,
                                          const uint32_t *triangles, size_t triangle_count, const int32_t *tags,
                                          laves_domain **domain, laves_error *error) {
+  return laves_domain_from_triangles_with(context, points, point_count, triangles, triangle_count, tags, NULL, domain, error);
+}
+
+laves_result laves_domain_from_triangles_with(laves_context *context, const double *points, size_t point_count,
+                                              const uint32_t *triangles, size_t triangle_count, const int32_t *tags,
+                                              const laves_surface_options *options, laves_domain **domain, laves_error *error) {
   *domain = NULL;
   laves_domain *made = domain_create(context);
   if (!made) return laves__fail_memory(context, error);
   laves__surface_input input = {0};
   laves_result result = copy_triangles(context, points, point_count, triangles, triangle_count, tags, &input, error);
   if (result == LAVES_OK)
-    result = laves__surface_build(context, &input, made, error);
+    result = laves__surface_build(context, &input, options, made, error);
   else
     laves__surface_input_free(context, &input);
   return finish(result, made, domain);

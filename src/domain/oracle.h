@@ -101,10 +101,13 @@ struct laves_domain {
 
 /* Makers, one file each; they fill oracle, info, format and tags of a zeroed domain. */
 
-/* Triangles as read: polygons already fanned; see surface_input.h. Takes the content of `input` over. */
+/* Triangles as read: polygons already fanned; see surface_input.h. Takes the content of `input` over. options: NULL: defaults. */
 struct laves__surface_input;
-laves_result laves__surface_build(laves_context *context, struct laves__surface_input *input, laves_domain *domain,
-                                  laves_error *error);
+laves_result laves__surface_build(laves_context *context, struct laves__surface_input *input,
+                                  const laves_surface_options *options, laves_domain *domain, laves_error *error);
+
+/* Whether they are the caller's to use: LAVES_OK, LAVES_ERROR_OPTION. */
+laves_result laves__surface_options_check(const laves_surface_options *options, laves_error *error);
 
 /* A Lua chunk; `is_expression`: "return " is put in front. `name` for messages; `folder`: where surface leaves are
  * looked for when their path is relative (NULL: the current folder). */

@@ -284,7 +284,7 @@ static laves_result read_surface(laves_context *context, const char *path, laves
   laves__surface_input input = {0};
   result = laves__surface_parse(context, bytes, length, path, &input, error);
   laves__free(context, bytes, length + 1, 1);
-  return result == LAVES_OK ? laves__surface_build(context, &input, domain, error) : result;
+  return result == LAVES_OK ? laves__surface_build(context, &input, NULL, domain, error) : result;
 }
 
 /* The path's last part without its extension. */

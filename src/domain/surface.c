@@ -2,12 +2,13 @@
  *
  * In: triangles as read, which are consumed.  Out: a domain: oracle, facts, tags.
  *
- *   weld -> tree -> topology -> (mend) -> direction -> crossings -> walls or open -> normals -> oracle
+ *   weld -> tree -> topology -> crossings -> (mend) -> directions -> walls or open -> normals -> oracle
  *
  * Local coordinates are input minus origin. The origin is the box's centre on those axes where the centre lies further out
  * than the box is wide, where the subtraction is exact; elsewhere zero, where there is nothing to subtract. */
 #include <string.h>
 
+#include "domain/defects.h"
 #include "domain/surface.h"
 
 /* Squares, cubes and products of coordinates must stay within the range of double with room. */
@@ -21,6 +22,34 @@ static const size_t few_walls = 1000;
 
 /* Share of the box that an open surface must enclose to be taken for that of a solid. */
 static const double enclosed_min = 1e-3;
+
+/* Where a surface winds round a point more often than this, there is solid. */
+static const double default_level = 0.5, level_min = 0.05, level_max = 100;
+/* Closed surfaces yield whole numbers, to the error of the expansions of the winding number. */
+static const double off_whole_numbers = 0.05;
+
+static const uint32_t surface_cookie = 0x73757266;
+
+laves_surface_options laves_surface_options_default(void) {
+  return (laves_surface_options){.winding = default_level, .close_holes = true, .cookie = surface_cookie};
+}
+
+laves_result laves__surface_options_check(const laves_surface_options *options, laves_error *error) {
+  const double level = options->winding;
+  if (options->cookie != surface_cookie)
+    return laves__fail(error, LAVES_ERROR_OPTION, "the surface options did not come from laves_surface_options_default()");
+  if (!(level >= level_min && level <= level_max))
+    return laves__fail(error, LAVES_ERROR_OPTION, "the winding number that is inside must be %g..%g, not %g", level_min,
+                       level_max, level);
+  if (!(fabs(level - round(level)) >= off_whole_numbers))
+    return laves__fail(error, LAVES_ERROR_OPTION,
+                       "the winding number that is inside must be at least %g off whole numbers, which closed surfaces yield, "
+                       "not %g; %g or %g tells them apart",
+                       off_whole_numbers, level, round(level) - 0.5 > 0 ? round(level) - 0.5 : 0.5, round(level) + 0.5);
+  if ((unsigned)options->overlap > LAVES_OVERLAP_NESTED)
+    return laves__fail(error, LAVES_ERROR_OPTION, "there is no meaning number %d of overlapping parts", (int)options->overlap);
+  return LAVES_OK;
+}
 
 static laves__box3 box_of(const laves__vec3 *points, size_t count) {
   laves__box3 b = box3_empty();
@@ -107,8 +136,7 @@ static bool build_tree(laves__surface *s, uint32_t *slots) {
   return done;
 }
 
-/* Turns a face over, and the triangle of the tree with it. */
-static void turn_face(laves__surface *s, uint32_t f) {
+void laves__surface_turn_face(laves__surface *s, uint32_t f) {
   const uint32_t swap = s->faces[f][1];
   s->faces[f][1] = s->faces[f][2];
   s->faces[f][2] = swap;
@@ -195,7 +223,7 @@ static bool turn_inverted(laves__surface *s, bool *inverted, bool *keep, laves_d
   for (uint32_t f = 0; f < s->face_count; f++) {
     if (!inverted[f]) continue;
     any = true;
-    turn_face(s, f);
+    laves__surface_turn_face(s, f);
   }
   if (!any) return true;
   info->turned = true;
@@ -204,7 +232,8 @@ static bool turn_inverted(laves__surface *s, bool *inverted, bool *keep, laves_d
          laves__surface_find_walls(s, keep, inverted);
 }
 
-/* Closed, but in several parts, crossing itself or not manifold: the union of what it encloses. */
+/* Closed, but in several parts, crossing itself, not manifold, or asked for where it winds round more than once: the union of
+ * what it encloses so often. */
 static bool solve_union(laves__surface *s, laves__crossings *c, laves_domain_info *info) {
   bool done = false;
   const size_t count = s->face_count;
@@ -219,7 +248,7 @@ static bool solve_union(laves__surface *s, laves__crossings *c, laves_domain_inf
   mark_doubtful(s);
   if (!laves__surface_find_segments(s, c)) goto clean_up;
   laves__surface_measure(s, &info->volume, &info->area);
-  if (c->count > 0) info->volume = laves__surface_union_volume(s);
+  if (c->count > 0 || s->level > 1) info->volume = laves__surface_union_volume(s);
   done = true;
 clean_up:
   laves__free(s->context, keep, count, sizeof *keep);
@@ -227,19 +256,7 @@ clean_up:
   return done;
 }
 
-static void note_crossings(const laves__surface *s, const laves__crossings *c, laves_domain_info *info) {
-  if (c->count == 0) return;
-  const laves__triangle *t = &s->bvh.triangles[c->pairs[0][0]];
-  laves__vec3 ends[2] = {t->a, t->b};
-  laves__triangles_meet(t, &s->bvh.triangles[c->pairs[0][1]], ends);
-  const laves__vec3 place = v3_lerp(ends[0], ends[1], 0.5);
-  info->defects[LAVES_DEFECT_CROSSING] = c->count;
-  info->defect_place[LAVES_DEFECT_CROSSING][0] = place.x;
-  info->defect_place[LAVES_DEFECT_CROSSING][1] = place.y;
-  info->defect_place[LAVES_DEFECT_CROSSING][2] = place.z;
-}
-
-/* Open: {winding number = 1/2}. */
+/* Open: {winding number = level}. */
 static bool solve_open(laves__surface *s, laves__crossings *c, laves_domain_info *info) {
   bool done = false;
   const size_t count = s->face_count;
@@ -276,42 +293,74 @@ static bool encloses_nothing(const laves__surface *s, const laves_domain_info *i
          laves__surface_inside_share(s, box_of(s->points, s->point_count)) < enclosed_min;
 }
 
-static bool mend(laves__surface *s, const laves_domain_info *info) {
-  if (!laves__surface_mend(s, info->defects[LAVES_DEFECT_OPEN_EDGE])) return false;
-  laves__bvh_free(s->context, &s->bvh);
-  return build_tree(s, NULL) && renew_topology(s, info);
+/* What is wrong with the surface as it was given. */
+static bool judge(laves__surface *s, laves__crossings *crossings, laves_domain_info *info) {
+  const bool done = build_tree(s, NULL) && laves__surface_topology(s, info) && laves__surface_crossings(s, crossings) &&
+                    laves__surface_note_crossings(s, crossings, info);
+  s->defects = NULL; /* what follows changes the surface */
+  return done;
 }
 
-static bool solve(laves__surface *s, laves_domain_info *info) {
-  laves__crossings crossings = {0};
-  bool done = false;
-  s->face_flags = laves__alloc_zeroed(s->context, s->face_capacity, sizeof *s->face_flags);
-  if (!s->face_flags || !build_tree(s, NULL) || !laves__surface_topology(s, info)) goto clean_up;
-  if (!laves__surface_crossings(s, &crossings)) goto clean_up;
-  note_crossings(s, &crossings, info);
-  const size_t judged = s->face_count;
-  if (!info->closed) {
-    laves__crossings_free(s->context, &crossings);
-    if (!mend(s, info) || !laves__surface_crossings(s, &crossings)) goto clean_up;
-  }
+static bool mend(laves__surface *s, laves__crossings *crossings, const laves_domain_info *info) {
+  laves__crossings_free(s->context, crossings);
+  if (!laves__surface_mend(s, info->defects[LAVES_DEFECT_OPEN_EDGE])) return false;
+  laves__bvh_free(s->context, &s->bvh);
+  return build_tree(s, NULL) && renew_topology(s, info) && laves__surface_crossings(s, crossings);
+}
+
+/* One closed manifold part that crosses nothing: the normals of its faces tell the solid. */
+static bool is_simple(const laves__surface *s, const laves__crossings *crossings, const laves_domain_info *info) {
+  return s->rim_count == 0 && crossings->count == 0 && info->component_count == 1 && s->level < 1 && !any_doubt(s);
+}
+
+/* The whole faces outwards, and parts as they are wanted to. */
+static bool face_outwards(laves__surface *s, const laves__crossings *crossings, laves_domain_info *info) {
   if (central_volume(s) < 0) {
-    for (uint32_t f = 0; f < s->face_count; f++) turn_face(s, f);
+    for (uint32_t f = 0; f < s->face_count; f++) laves__surface_turn_face(s, f);
     info->turned = true;
-    if (!renew_topology(s, info)) goto clean_up;
+    if (!renew_topology(s, info)) return false;
   }
-  laves__surface_measure(s, &info->volume, &info->area);
-  if ((s->rim_count > 0 || crossings.count > 0 || info->component_count > 1 || any_doubt(s)) && !laves__surface_find_parts(s))
+  if (is_simple(s, crossings, info)) return true;
+  bool any_turned;
+  if (!laves__surface_find_parts(s) || !laves__surface_direct_parts(s, crossings, info, &any_turned)) return false;
+  return !any_turned || renew_topology(s, info);
+}
+
+static laves_result refuse_holes(const laves__surface *s, laves_error *error) {
+  const uint32_t half = s->rim[0], *face = s->faces[half / 3];
+  const laves__vec3 p = v3_add(v3_lerp(s->points[face[half % 3]], s->points[face[(half % 3 + 1) % 3]], 0.5), s->origin);
+  return laves__fail(error, LAVES_ERROR_INPUT,
+                     "the surface is open: %zu edges stay open once cracks are mended, one near (%.6g, %.6g, %.6g); close it, or "
+                     "let its holes be closed",
+                     s->rim_count, p.x, p.y, p.z);
+}
+
+static laves_result solve(laves__surface *s, bool close_holes, laves_domain_info *info, laves_error *error) {
+  laves__crossings crossings = {0};
+  laves_result result = LAVES_OK;
+  s->face_flags = laves__alloc_zeroed(s->context, s->face_capacity, sizeof *s->face_flags);
+  bool done = s->face_flags && judge(s, &crossings, info);
+  const size_t judged = s->face_count;
+  if (done && !info->closed) done = mend(s, &crossings, info);
+  if (done && s->rim_count > 0 && !close_holes) {
+    result = refuse_holes(s, error);
     goto clean_up;
-  if (s->rim_count > 0) {
-    if (!solve_open(s, &crossings, info)) goto clean_up;
-  } else if (crossings.count > 0 || info->component_count > 1 || any_doubt(s)) {
-    if (!solve_union(s, &crossings, info)) goto clean_up;
   }
-  done = laves__surface_normals(s);
+  done = done && face_outwards(s, &crossings, info);
+  if (done) {
+    info->open_edges_left = s->rim_count;
+    laves__surface_measure(s, &info->volume, &info->area);
+    if (s->rim_count > 0)
+      done = solve_open(s, &crossings, info);
+    else if (!is_simple(s, &crossings, info))
+      done = solve_union(s, &crossings, info);
+  }
+  done = done && laves__surface_normals(s);
   if (done && s->face_count == judged) done = laves__surface_genus(s, info);
+  if (!done) result = laves__fail_memory(s->context, error);
 clean_up:
   laves__crossings_free(s->context, &crossings);
-  return done;
+  return result;
 }
 
 static void to_input(laves__vec3 p, laves__vec3 origin, double out[3]) {
@@ -344,56 +393,67 @@ static void fill_domain(laves__surface *s, laves__surface_input *input, laves__v
   input->tag_count = 0;
 }
 
-laves_result laves__surface_build(laves_context *context, laves__surface_input *input, laves_domain *domain, laves_error *error) {
-  laves_result result = LAVES_OK;
-  laves__surface *s = NULL;
+static laves_result check_input(const laves__surface_input *input, double diagonal, laves_error *error) {
+  if (input->triangle_count == 0) return laves__fail(error, LAVES_ERROR_INPUT, "the surface has no triangles");
+  if (input->triangle_count >= LAVES__FACES_MAX || input->point_count >= LAVES__NONE)
+    return laves__fail(error, LAVES_ERROR_INPUT, "the surface has %zu triangles; at most %d can be handled",
+                       input->triangle_count, LAVES__FACES_MAX - 1);
+  if (!(diagonal >= diagonal_min && diagonal <= diagonal_max))
+    return laves__fail(error, LAVES_ERROR_INPUT,
+                       "the surface is %g wide, which arithmetic cannot handle; scale it to between %g and %g", diagonal,
+                       diagonal_min, diagonal_max);
+  return LAVES_OK;
+}
+
+static laves_result refuse_emptiness(const laves__surface *s, size_t triangle_count, const laves_domain_info *info,
+                                     laves_error *error) {
+  if (s->level != default_level)
+    return laves__fail(error, LAVES_ERROR_INPUT,
+                       "nowhere does the surface wind round enough points more than %g times, which was asked for", s->level);
+  return laves__fail(error, LAVES_ERROR_INPUT,
+                     "the surface encloses no volume: %zu triangles in %zu unconnected parts, with %zu open edges; close it, or "
+                     "check that it is a solid's surface",
+                     triangle_count, info->component_count, info->defects[LAVES_DEFECT_OPEN_EDGE]);
+}
+
+/* Weld, solve, judge. */
+static laves_result make_surface(laves__surface *s, const laves__surface_input *input, bool close_holes, laves_domain_info *info,
+                                 laves_error *error) {
+  if (!laves__surface_weld(s, input, s->origin, info)) return laves__fail_memory(s->context, error);
+  if (s->face_count == 0)
+    return laves__fail(error, LAVES_ERROR_INPUT, "all %zu triangles of the surface are without area", input->triangle_count);
+  const laves_result result = solve(s, close_holes, info, error);
+  if (result != LAVES_OK) return result;
+  return encloses_nothing(s, info) ? refuse_emptiness(s, input->triangle_count, info, error) : LAVES_OK;
+}
+
+laves_result laves__surface_build(laves_context *context, laves__surface_input *input, const laves_surface_options *options,
+                                  laves_domain *domain, laves_error *error) {
+  const laves_surface_options given = options ? *options : laves_surface_options_default();
   const laves__box3 box = used_box(input);
-  const double diagonal = box3_diagonal(box);
-  if (input->triangle_count == 0) {
-    result = laves__fail(error, LAVES_ERROR_INPUT, "the surface has no triangles");
-    goto clean_up;
-  }
-  if (input->triangle_count >= LAVES__FACES_MAX || input->point_count >= LAVES__NONE) {
-    result = laves__fail(error, LAVES_ERROR_INPUT, "the surface has %zu triangles; at most %d can be handled",
-                         input->triangle_count, LAVES__FACES_MAX - 1);
-    goto clean_up;
-  }
-  if (!(diagonal >= diagonal_min && diagonal <= diagonal_max)) {
-    result = laves__fail(error, LAVES_ERROR_INPUT,
-                         "the surface is %g wide, which arithmetic cannot handle; scale it to between %g and %g", diagonal,
-                         diagonal_min, diagonal_max);
-    goto clean_up;
-  }
+  laves__surface *s = NULL;
+  laves_result result = laves__surface_options_check(&given, error);
+  if (given.defects) laves__defects_clear(given.defects);
+  if (result == LAVES_OK) result = check_input(input, box3_diagonal(box), error);
+  if (result != LAVES_OK) goto clean_up;
   s = laves__alloc_zeroed(context, 1, sizeof *s);
   if (!s) {
     result = laves__fail_memory(context, error);
     goto clean_up;
   }
   s->context = context;
-  s->diagonal = diagonal;
-  const laves__vec3 origin = choose_origin(box);
-  if (!laves__surface_weld(s, input, origin, &domain->info)) {
-    result = laves__fail_memory(context, error);
-    goto clean_up;
+  s->diagonal = box3_diagonal(box);
+  s->origin = choose_origin(box);
+  s->level = domain->info.winding_level = given.winding;
+  s->defects = given.defects;
+  domain->info.overlap = given.overlap;
+  result = make_surface(s, input, given.close_holes, &domain->info, error);
+  if (given.defects) {
+    laves__defects_move(given.defects, s->origin);
+    if (given.defects->short_of_memory && result == LAVES_OK) result = laves__fail_memory(context, error);
   }
-  if (s->face_count == 0) {
-    result = laves__fail(error, LAVES_ERROR_INPUT, "all %zu triangles of the surface are without area", input->triangle_count);
-    goto clean_up;
-  }
-  if (!solve(s, &domain->info)) {
-    result = laves__fail_memory(context, error);
-    goto clean_up;
-  }
-  if (encloses_nothing(s, &domain->info)) {
-    const laves_domain_info *info = &domain->info;
-    result =
-        laves__fail(error, LAVES_ERROR_INPUT,
-                    "the surface encloses no volume: %zu triangles in %zu unconnected parts, with %zu open edges; close it, or "
-                    "check that it is a solid's surface",
-                    input->triangle_count, info->component_count, info->defects[LAVES_DEFECT_OPEN_EDGE]);
-    goto clean_up;
-  }
-  fill_domain(s, input, origin, domain);
+  if (result != LAVES_OK) goto clean_up;
+  fill_domain(s, input, s->origin, domain);
   s = NULL;
 clean_up:
   laves__surface_free(context, s);

@@ -8,6 +8,7 @@
  *   surface_winding.c   how often the surface winds round a point
  *   surface_patch.c     which triangles bound the union of what is enclosed
  *   surface_mend.c      cracks, repeats and directions of surfaces that are not closed
+ *   surface_direct.c    which way parts within parts face
  *   surface_open.c      what stays open: {winding number = 1/2}
  *   surface_part.c      closed parts, which can be regions of the mesh
  *   surface_sample.c    samples, thin places
@@ -132,6 +133,8 @@ typedef struct laves__segment {
 
 typedef struct laves__surface {
   laves_context *context;
+  double level;                  /* the solid is where the winding number exceeds it */
+  struct laves_defects *defects; /* while the input is judged, and places are asked for; else NULL */
   laves__vec3 *points;
   size_t point_count, point_capacity;
   uint32_t (*faces)[3]; /* in the order of the tree's slots */
@@ -143,6 +146,7 @@ typedef struct laves__surface {
   laves__vec3 *point_normals; /* [point_capacity] weighted by angle */
   laves__bvh bvh;
   double diagonal;
+  laves__vec3 origin; /* input coordinates of the local zero point */
   /* Where normals do not tell the sign, the winding number does: at partial faces and at doubtful points and edges. */
   bool needs_winding;
   uint8_t *face_flags;   /* [face_capacity] */
@@ -222,6 +226,8 @@ typedef struct laves__crossings {
 /* All pairs of triangles that cross, overlap, or touch other than in common points and edges. False when memory is short
  * or on a cancel. */
 bool laves__surface_crossings(const laves__surface *s, laves__crossings *all);
+/* Counts them in info, and notes them in s->defects. False when memory is short. */
+bool laves__surface_note_crossings(const laves__surface *s, const laves__crossings *c, laves_domain_info *info);
 void laves__crossings_free(laves_context *context, laves__crossings *c);
 /* The segment in which two triangles of different planes meet, to rounding. */
 bool laves__triangles_meet(const laves__triangle *t, const laves__triangle *u, laves__vec3 ends[2]);
@@ -243,18 +249,42 @@ bool laves__surface_find_segments(laves__surface *s, const laves__crossings *c);
  * short. */
 bool laves__surface_find_parts(laves__surface *s);
 
-/* Closed parts with an inside, to be asked which of them a point is in. */
+/* Faces by part: those of part p stand in slots starts[p] .. starts[p + 1] - 1. */
+typedef struct laves__part_faces {
+  uint32_t *starts; /* [part_count + 2] */
+  uint32_t *slots;  /* [face_count] */
+  size_t part_count, face_count;
+} laves__part_faces;
+/* False when memory is short; free it either way. */
+bool laves__part_faces_list(const laves__surface *s, laves__part_faces *of);
+void laves__part_faces_free(laves_context *context, laves__part_faces *of);
+
+/* Closed parts with an inside, to be asked which of them a point is in; hollows: and those that face inwards. */
 typedef struct laves__parts laves__parts;
 /* NULL when memory is short. s must outlive the result. */
-laves__parts *laves__parts_create(const laves__surface *s);
+laves__parts *laves__parts_create(const laves__surface *s, bool hollows);
 void laves__parts_free(laves__parts *parts);
 size_t laves__parts_count(const laves__parts *parts);
+/* Which part of the surface it is, and its volume, negative for hollows. */
+uint32_t laves__parts_number(const laves__parts *parts, size_t part);
+double laves__parts_volume(const laves__parts *parts, size_t part);
 /* The tag that stands for the part alone, or -1. */
 int32_t laves__parts_tag(const laves__parts *parts, size_t part);
 /* The part that holds p, of several the one of least volume; -1: none. */
 int32_t laves__parts_at(const laves__parts *parts, laves__vec3 p);
+/* Calls fn for every part that holds p. */
+typedef void laves__part_fn(void *user, size_t part);
+void laves__parts_around(const laves__parts *parts, laves__vec3 p, laves__part_fn *fn, void *user);
 /* Whether any triangle of the surface, of walls inside the solid as well, is within the distance of p. */
 bool laves__parts_touch(const laves__parts *parts, laves__vec3 p, double distance);
+
+/* ---- directions ---- */
+
+/* Turns a face over, and the triangle of the tree with it. */
+void laves__surface_turn_face(laves__surface *s, uint32_t f);
+/* Turns closed parts as info->overlap says, and counts those that cross, that are nested, and that are hollows. turned: whether
+ * any was turned, so that topology must be found anew. False when memory is short. */
+bool laves__surface_direct_parts(laves__surface *s, const laves__crossings *c, laves_domain_info *info, bool *turned);
 
 /* ---- open surfaces ---- */
 

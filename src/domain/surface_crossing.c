@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/predicates.h"
+#include "domain/defects.h"
 #include "domain/surface.h"
 
 /* ---- two triangles ---- */
@@ -272,4 +273,36 @@ bool laves__triangles_meet(const laves__triangle *t, const laves__triangle *u, l
   ends[0] = v3_mad(point, direction, low);
   ends[1] = v3_mad(point, direction, high);
   return true;
+}
+
+/* ---- telling ---- */
+
+/* Each pair with the segment in which it meets (an edge of the first where both lie in one plane). */
+static void note_segments(const laves__surface *s, const laves__crossings *c, laves_domain_info *info) {
+  for (size_t i = 0; i < c->count; i++) {
+    const laves__triangle *t = &s->bvh.triangles[c->pairs[i][0]];
+    laves__vec3 ends[2] = {t->a, t->b};
+    if (i == 0 || s->defects) laves__triangles_meet(t, &s->bvh.triangles[c->pairs[i][1]], ends);
+    laves__note_defect(info, s->defects, LAVES_DEFECT_CROSSING, 2, ends);
+  }
+}
+
+/* The faces of all crossings, each once. */
+static bool note_faces(const laves__surface *s, const laves__crossings *c) {
+  if (!s->defects || c->count == 0) return true;
+  bool *noted = laves__alloc_zeroed(s->context, s->face_count, sizeof *noted);
+  if (!noted) return false;
+  for (size_t i = 0; i < 2 * c->count; i++) {
+    const uint32_t f = c->pairs[i / 2][i % 2];
+    const laves__triangle *t = &s->bvh.triangles[f];
+    if (!noted[f]) laves__defects_add(s->defects, LAVES_DEFECT_CROSSING, 3, (laves__vec3[3]){t->a, t->b, t->c});
+    noted[f] = true;
+  }
+  laves__free(s->context, noted, s->face_count, sizeof *noted);
+  return true;
+}
+
+bool laves__surface_note_crossings(const laves__surface *s, const laves__crossings *c, laves_domain_info *info) {
+  note_segments(s, c, info);
+  return note_faces(s, c);
 }

@@ -1,4 +1,4 @@
-/* Surfaces that stay open: the solid is where the generalised winding number exceeds one half.
+/* Surfaces that stay open: the solid is where the generalised winding number exceeds a level, one half unless told otherwise.
  *
  * In: a mended surface with its tree, winding number and rim (the edges not used as often forwards as backwards).
  * Out: which triangles bound the solid, and distance, projection and side for it.
@@ -34,7 +34,8 @@ enum { SAMPLES = 32, BISECTIONS = 50, EXPANSIONS = 6, LONG_RIM = 1024 };
 
 /* ---- building ---- */
 
-/* Winding numbers at four places of a face, its middle and near its corners: the least and the greatest distance from 1/2. */
+/* Winding numbers at four places of a face, its middle and near its corners: the least and the greatest distance from the level.
+ */
 static void judge_face(const laves__surface *s, uint32_t f, double *least, double *most) {
   const laves__triangle *t = &s->bvh.triangles[f];
   const laves__vec3 middle = v3_scale(v3_add(t->a, v3_add(t->b, t->c)), 1.0 / 3);
@@ -42,7 +43,7 @@ static void judge_face(const laves__surface *s, uint32_t f, double *least, doubl
   *least = INFINITY;
   *most = 0;
   for (int k = 0; k < 4; k++) {
-    const double off = fabs(laves__winding_number(&s->winding, places[k], f, LAVES__NONE) - 0.5);
+    const double off = fabs(laves__winding_number(&s->winding, places[k], f, LAVES__NONE) - s->level);
     *least = fmin(*least, off);
     *most = fmax(*most, off);
   }
@@ -124,7 +125,7 @@ static void sample_layers(void *user, size_t begin, size_t end, int worker) {
     m->inside[k] = 0;
     for (int i = 0; i < SAMPLES * SAMPLES; i++) {
       const laves__vec3 at = v3(((double)k + 0.5) * width.x, (i / SAMPLES + 0.5) * width.y, (i % SAMPLES + 0.5) * width.z);
-      m->inside[k] += laves__winding_number(&m->s->winding, v3_add(m->box.lower, at), LAVES__NONE, LAVES__NONE) > 0.5;
+      m->inside[k] += laves__winding_number(&m->s->winding, v3_add(m->box.lower, at), LAVES__NONE, LAVES__NONE) > m->s->level;
     }
   }
 }
@@ -140,7 +141,7 @@ double laves__surface_inside_share(const laves__surface *s, laves__box3 box) {
 /* ---- asking ---- */
 
 static double excess(const laves__surface *s, laves__vec3 p) {
-  return laves__winding_number(&s->winding, p, LAVES__NONE, LAVES__NONE) - 0.5;
+  return laves__winding_number(&s->winding, p, LAVES__NONE, LAVES__NONE) - s->level;
 }
 
 static double rim_distance(const laves__surface *s, laves__vec3 p, double reach) {

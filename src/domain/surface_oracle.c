@@ -54,7 +54,7 @@ static bool is_doubtful(const laves__surface *s, uint32_t slot, int on) {
 }
 
 static bool is_inside(const laves__surface *s, laves__vec3 p) {
-  return laves__winding_number(&s->winding, p, LAVES__NONE, LAVES__NONE) > 0.5;
+  return laves__winding_number(&s->winding, p, LAVES__NONE, LAVES__NONE) > s->level;
 }
 
 /* Whether a partial face bounds the solid at its point q. With the face left out the number is the mean of both sides, so
@@ -64,13 +64,13 @@ bool laves__surface_bounds_at(const laves__surface *s, uint32_t slot, laves__vec
   const laves__triangle *t = &s->bvh.triangles[slot];
   const laves__vec3 middle = v3_scale(v3_add(t->a, v3_add(t->b, t->c)), 1.0 / 3);
   const double mean = laves__winding_number(&s->winding, v3_lerp(q, middle, inwards), winding_slot(s, slot), LAVES__NONE);
-  return mean > 0 && mean < 1;
+  return fabs(mean - s->level) < 0.5;
 }
 
 /* The same for a point of the segment where two faces meet; here the mean is that of four sides, of -1 to 1 about it. */
 static bool bounds_at_crossing(const laves__surface *s, uint32_t slot, uint32_t other, laves__vec3 q) {
   const double mean = laves__winding_number(&s->winding, q, winding_slot(s, slot), winding_slot(s, other));
-  return mean > -0.5 && mean < 1.5;
+  return fabs(mean - s->level) < 1;
 }
 
 static laves__vec3 closest_on_segment(const laves__segment *g, laves__vec3 p) {

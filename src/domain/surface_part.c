@@ -311,6 +311,7 @@ typedef struct solid_part {
   laves__winding winding;
   laves__box3 box;
   double volume;
+  uint32_t number; /* among all parts of the surface */
   int32_t tag;
 } solid_part;
 
@@ -406,17 +407,18 @@ static bool build_boxes(laves__parts *parts) {
   return done;
 }
 
-/* Keeps the closed parts that have an inside: cavities, whose volume is negative, bound what is around them. */
-static bool keep_parts(laves__parts *parts, const uint32_t *starts, const uint32_t *slots) {
+/* Keeps the closed parts: those that have an inside, or also hollows, whose volume is negative and which bound what is around
+ * them. */
+static bool keep_parts(laves__parts *parts, bool hollows, const laves__part_faces *of) {
   const laves__surface *s = parts->surface;
   const laves__bvh *whole = whole_tree(s);
   for (size_t p = 0; p < s->part_count; p++) {
-    const uint32_t *mine = slots + starts[p];
-    const size_t count = starts[p + 1] - starts[p];
+    const uint32_t *mine = of->slots + of->starts[p];
+    const size_t count = of->starts[p + 1] - of->starts[p];
     const double volume = volume_of(whole, mine, count);
-    if (!s->part_closed[p] || !(volume > 0)) continue;
+    if (!s->part_closed[p] || !(hollows ? volume != 0 : volume > 0)) continue;
     solid_part *kept = &parts->part[parts->count];
-    *kept = (solid_part){.volume = volume, .tag = s->part_tag[p]};
+    *kept = (solid_part){.volume = volume, .number = (uint32_t)p, .tag = s->part_tag[p]};
     if (!build_part(parts->context, whole, mine, count, kept)) {
       free_part(parts->context, kept);
       return false;
@@ -426,28 +428,38 @@ static bool keep_parts(laves__parts *parts, const uint32_t *starts, const uint32
   return parts->count == 0 || (rank_parts(parts) && build_boxes(parts));
 }
 
-laves__parts *laves__parts_create(const laves__surface *s) {
+bool laves__part_faces_list(const laves__surface *s, laves__part_faces *of) {
+  *of = (laves__part_faces){.face_count = whole_tree(s)->count, .part_count = s->part_count};
+  of->starts = laves__alloc_zeroed(s->context, of->part_count + 2, sizeof *of->starts);
+  of->slots = laves__alloc(s->context, of->face_count, sizeof *of->slots);
+  if (!of->starts || !of->slots) return false;
+  /* starts[p + 1] runs from the start of p to its end. */
+  for (size_t f = 0; f < of->face_count; f++) of->starts[s->part[f] + 2]++;
+  for (size_t p = 0; p < of->part_count; p++) of->starts[p + 2] += of->starts[p + 1];
+  for (size_t f = 0; f < of->face_count; f++) of->slots[of->starts[s->part[f] + 1]++] = (uint32_t)f;
+  return true;
+}
+
+void laves__part_faces_free(laves_context *context, laves__part_faces *of) {
+  laves__free(context, of->starts, of->part_count + 2, sizeof *of->starts);
+  laves__free(context, of->slots, of->face_count, sizeof *of->slots);
+  *of = (laves__part_faces){0};
+}
+
+laves__parts *laves__parts_create(const laves__surface *s, bool hollows) {
   laves_context *context = s->context;
   laves__parts *parts = laves__alloc_zeroed(context, 1, sizeof *parts);
   if (!parts) return NULL;
   *parts = (laves__parts){.context = context, .surface = s};
   if (!s->part) return parts;
-  const size_t faces = whole_tree(s)->count;
-  uint32_t *starts = laves__alloc_zeroed(context, s->part_count + 2, sizeof *starts);
-  uint32_t *slots = laves__alloc(context, faces, sizeof *slots);
+  laves__part_faces of;
+  bool done = laves__part_faces_list(s, &of);
   parts->part = laves__alloc(context, s->part_count, sizeof *parts->part);
   parts->rank = laves__alloc(context, s->part_count, sizeof *parts->rank);
   parts->part_at = laves__alloc(context, s->part_count, sizeof *parts->part_at);
   parts->capacity = s->part_count;
-  bool done = starts && slots && parts->part && parts->rank && parts->part_at;
-  if (done) { /* starts[p + 1] runs from the start of p to its end */
-    for (size_t f = 0; f < faces; f++) starts[s->part[f] + 2]++;
-    for (size_t p = 0; p < s->part_count; p++) starts[p + 2] += starts[p + 1];
-    for (size_t f = 0; f < faces; f++) slots[starts[s->part[f] + 1]++] = (uint32_t)f;
-    done = keep_parts(parts, starts, slots);
-  }
-  laves__free(context, starts, s->part_count + 2, sizeof *starts);
-  laves__free(context, slots, faces, sizeof *slots);
+  done = done && parts->part && parts->rank && parts->part_at && keep_parts(parts, hollows, &of);
+  laves__part_faces_free(context, &of);
   if (done) return parts;
   laves__parts_free(parts);
   return NULL;
@@ -466,10 +478,18 @@ void laves__parts_free(laves__parts *parts) {
 
 size_t laves__parts_count(const laves__parts *parts) { return parts->count; }
 
+uint32_t laves__parts_number(const laves__parts *parts, size_t part) { return parts->part[part].number; }
+
+double laves__parts_volume(const laves__parts *parts, size_t part) { return parts->part[part].volume; }
+
 int32_t laves__parts_tag(const laves__parts *parts, size_t part) { return parts->part[part].tag; }
 
 static bool box_holds(laves__box3 b, laves__vec3 p) {
   return p.x >= b.lower.x && p.x <= b.upper.x && p.y >= b.lower.y && p.y <= b.upper.y && p.z >= b.lower.z && p.z <= b.upper.z;
+}
+
+static bool part_holds(const solid_part *part, laves__vec3 p) {
+  return box_holds(part->box, p) && fabs(laves__winding_number(&part->winding, p, LAVES__NONE, LAVES__NONE)) > 0.5;
 }
 
 typedef struct question {
@@ -482,15 +502,32 @@ static void ask_part(void *user, uint32_t slot) {
   question *q = user;
   const laves__parts *parts = q->parts;
   const uint32_t index = parts->part_at[slot];
-  const solid_part *part = &parts->part[index];
-  if ((q->best >= 0 && parts->rank[q->best] < parts->rank[index]) || !box_holds(part->box, q->point)) return;
-  if (laves__winding_number(&part->winding, q->point, LAVES__NONE, LAVES__NONE) > 0.5) q->best = (int32_t)index;
+  if (q->best >= 0 && parts->rank[q->best] < parts->rank[index]) return;
+  if (part_holds(&parts->part[index], q->point)) q->best = (int32_t)index;
 }
 
 int32_t laves__parts_at(const laves__parts *parts, laves__vec3 p) {
   question q = {parts, p, -1};
   if (parts->count > 0) laves__bvh_overlaps(&parts->boxes, (laves__box3){p, p}, ask_part, &q);
   return q.best;
+}
+
+typedef struct telling {
+  const laves__parts *parts;
+  laves__vec3 point;
+  laves__part_fn *fn;
+  void *user;
+} telling;
+
+static void tell_part(void *user, uint32_t slot) {
+  const telling *r = user;
+  const uint32_t index = r->parts->part_at[slot];
+  if (part_holds(&r->parts->part[index], r->point)) r->fn(r->user, index);
+}
+
+void laves__parts_around(const laves__parts *parts, laves__vec3 p, laves__part_fn *fn, void *user) {
+  telling r = {parts, p, fn, user};
+  if (parts->count > 0) laves__bvh_overlaps(&parts->boxes, (laves__box3){p, p}, tell_part, &r);
 }
 
 bool laves__parts_touch(const laves__parts *parts, laves__vec3 p, double distance) {

@@ -3,11 +3,11 @@
  * In: a closed surface, its crossings, its winding number.  Out: for each triangle whether it stays, and whether only a part
  * of it may count.
  *
- * The solid is where the winding number is at least one. Triangles that meet others are kept and marked partial. The rest falls
- * into patches, joined over edges of two faces; no patch is crossed, so it bounds the solid everywhere or nowhere, and one
- * question in the middle of its largest triangle decides: with this triangle left out, the number there is the mean of the
- * numbers before and behind it, so 1/2 says outside before and inside behind. Otherwise the patch is a wall inside the solid, and
- * is left out of the distance, though not of the winding number. */
+ * The solid is where the winding number exceeds the surface's level, one half unless told otherwise. Triangles that meet others
+ * are kept and marked partial. The rest falls into patches, joined over edges of two faces; no patch is crossed, so it bounds the
+ * solid everywhere or nowhere, and one question in the middle of its largest triangle decides: with this triangle left out, the
+ * number there is the mean of the numbers before and behind it, so less than 1/2 from the level says outside before and inside
+ * behind. Otherwise the patch is a wall inside the solid, and is left out of the distance, though not of the winding number. */
 #include <string.h>
 
 #include "domain/surface.h"
@@ -56,8 +56,8 @@ bool laves__surface_find_walls(const laves__surface *s, bool *keep, bool *invert
         continue;
       }
       const double mean = laves__surface_mean_winding(s, flood(s, f, f, labels, stack));
-      keep[f] = mean > 0 && mean < 1;
-      inverted[f] = mean > -1 && mean < 0;
+      keep[f] = fabs(mean - s->level) < 0.5;
+      inverted[f] = fabs(mean + s->level) < 0.5;
     }
   }
   laves__free(s->context, labels, count, sizeof *labels);

@@ -11,14 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "domain/defects.h"
 #include "domain/surface.h"
-
-static void note(laves_domain_info *info, laves_defect defect, laves__vec3 place) {
-  if (info->defects[defect]++ > 0) return;
-  info->defect_place[defect][0] = place.x;
-  info->defect_place[defect][1] = place.y;
-  info->defect_place[defect][2] = place.z;
-}
 
 /* A use of an edge, beside its lesser point. */
 typedef laves__edge_use use;
@@ -98,15 +92,15 @@ static void judge_edge(edges *e, const use *uses, size_t count) {
     if (i > 0) join(e->parent, uses[0].half / 3, uses[i].half / 3);
     s->across[uses[i].half] = LAVES__NONE;
   }
-  const laves__vec3 place = v3_lerp(s->points[edge_start(s, uses[0].half)], s->points[edge_end(s, uses[0].half)], 0.5);
+  const laves__vec3 ends[2] = {s->points[edge_start(s, uses[0].half)], s->points[edge_end(s, uses[0].half)]};
   if (2 * forward != count) {
     e->closed = false;
     add_to_rim(e, uses, count, forward);
   }
-  if (count == 1) note(e->info, LAVES_DEFECT_OPEN_EDGE, place);
-  if (count > 2) note(e->info, LAVES_DEFECT_NONMANIFOLD_EDGE, place);
+  if (count == 1) laves__note_defect(e->info, s->defects, LAVES_DEFECT_OPEN_EDGE, 2, ends);
+  if (count > 2) laves__note_defect(e->info, s->defects, LAVES_DEFECT_NONMANIFOLD_EDGE, 2, ends);
   if (count != 2) return;
-  if (forward != 1) note(e->info, LAVES_DEFECT_DIRECTION, place);
+  if (forward != 1) laves__note_defect(e->info, s->defects, LAVES_DEFECT_DIRECTION, 2, ends);
   s->across[uses[0].half] = uses[1].half;
   s->across[uses[1].half] = uses[0].half;
 }
@@ -192,7 +186,7 @@ static bool judge_points(laves__surface *s, laves_domain_info *info) {
     for (uint32_t p = 0; p < count; p++) {
       bool closes = false;
       const bool single = valence[p] == 0 || one_fan(s, p, any_face[p], valence[p], &closes);
-      if (!single) note(info, LAVES_DEFECT_NONMANIFOLD_VERTEX, s->points[p]);
+      if (!single) laves__note_defect(info, s->defects, LAVES_DEFECT_NONMANIFOLD_VERTEX, 1, &s->points[p]);
       s->doubtful_points[p] = !single || !closes;
     }
   }

@@ -9,14 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "domain/defects.h"
 #include "domain/surface.h"
-
-static void note(laves_domain_info *info, laves_defect defect, laves__vec3 place) {
-  if (info->defects[defect]++ > 0) return;
-  info->defect_place[defect][0] = place.x;
-  info->defect_place[defect][1] = place.y;
-  info->defect_place[defect][2] = place.z;
-}
 
 static uint64_t mix(uint64_t h, double x) {
   uint64_t bits;
@@ -46,7 +40,7 @@ static bool find_equal_points(laves__surface *s, const laves__vec3 *points, cons
       table[slot] = (uint32_t)i;
     } else {
       first[i] = table[slot];
-      note(info, LAVES_DEFECT_REPEATED_POINT, points[i]);
+      laves__note_defect(info, s->defects, LAVES_DEFECT_REPEATED_POINT, 1, &points[i]);
     }
   }
   laves__free(s->context, table, slots, sizeof *table);
@@ -65,7 +59,7 @@ static void number_points(laves__surface *s, const laves__vec3 *points, const bo
   s->point_count = 0;
   for (size_t i = 0; i < count; i++) {
     if (!used[i]) {
-      note(info, LAVES_DEFECT_UNUSED_POINT, points[i]);
+      laves__note_defect(info, s->defects, LAVES_DEFECT_UNUSED_POINT, 1, &points[i]);
     } else if (first[i] == i) {
       s->points[s->point_count] = points[i];
       first[i] = (uint32_t)s->point_count++;
@@ -81,7 +75,8 @@ static void copy_faces(laves__surface *s, const laves__surface_input *input, con
     const uint32_t *t = input->triangles[f];
     const uint32_t a = number[t[0]], b = number[t[1]], c = number[t[2]];
     if (a == b || b == c || c == a) {
-      note(info, LAVES_DEFECT_DEGENERATE_FACE, s->points[a]);
+      laves__note_defect(info, s->defects, LAVES_DEFECT_DEGENERATE_FACE, 3,
+                         (laves__vec3[3]){s->points[a], s->points[b], s->points[c]});
       continue;
     }
     uint32_t *face = s->faces[s->face_count];
@@ -152,6 +147,11 @@ static bool find_repeats(laves__surface *s, bool any_direction, bool *repeats) {
   return done;
 }
 
+static void note_face(const laves__surface *s, laves_domain_info *info, laves_defect kind, size_t face) {
+  const uint32_t *f = s->faces[face];
+  laves__note_defect(info, s->defects, kind, 3, (laves__vec3[3]){s->points[f[0]], s->points[f[1]], s->points[f[2]]});
+}
+
 bool laves__surface_drop_repeats(laves__surface *s, bool any_direction, laves_domain_info *info) {
   const size_t count = s->face_count;
   bool *repeats = laves__alloc(s->context, count, sizeof *repeats);
@@ -160,7 +160,7 @@ bool laves__surface_drop_repeats(laves__surface *s, bool any_direction, laves_do
     size_t kept = 0;
     for (size_t f = 0; f < count; f++) {
       if (repeats[f]) {
-        note(info, LAVES_DEFECT_DUPLICATE_FACE, s->points[s->faces[f][0]]);
+        note_face(s, info, LAVES_DEFECT_DUPLICATE_FACE, f);
         continue;
       }
       memmove(s->faces[kept], s->faces[f], sizeof *s->faces);

@@ -39,7 +39,7 @@ static made make(const body *bodies, size_t count, bool with_tags, size_t droppe
                                   with_tags ? tags : NULL, &m.domain, &error) != LAVES_OK)
     fail_msg("%s", error.text);
   shape_free(&all);
-  m.parts = laves__parts_create(m.domain->oracle.surface);
+  m.parts = laves__parts_create(m.domain->oracle.surface, false);
   assert_non_null(m.parts);
   return m;
 }
