@@ -51,6 +51,7 @@ const size_t command_count = sizeof commands / sizeof commands[0];
 #define MEMBER(name) offsetof(settings, name)
 
 #define IN_SIZE "Size (at most one; none: about 50 thousand tetrahedra)"
+#define IN_SURFACE "Surfaces (docs/dirty.md)"
 #define IN_SIZING "Sizes that vary (docs/sizing.md); the size above is the largest, and the least asked for counts"
 #define IN_FEATURES "Features (docs/features.md)"
 #define IN_TILING "Tiling"
@@ -73,6 +74,20 @@ const option option_rows[] = {
      "mean edge length; a cubic cell has side 2.5118 H"},
     {"cells", 0, TILING, IN_TILING, OPTION_CELLS, "N[,N,N]", "cells", false, 1, 1000, "4", MEMBER(cells), 0,
      "periods along each axis, 136 tetrahedra in each cell"},
+
+    {"winding", 0, MESH | CHECK | INFO, IN_SURFACE, OPTION_REAL, "N", NULL, false, 0.05, 100, "0.5", MEMBER(winding), 0,
+     "inside is where a surface winds round a point more often than this: 1.5 for the overlap of closed parts; below 0.5 the "
+     "caps "
+     "of open surfaces stand further out, above it further in"},
+    {"close-holes", 0, MESH | CHECK | INFO, IN_SURFACE, OPTION_SWITCH, "yes|no", NULL, false, 0, 0, "yes", MEMBER(close_holes), 0,
+     "no: refuse a surface that stays open once its cracks are mended, and say where"},
+    {"union", 0, MESH | CHECK | INFO, IN_SURFACE, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(unite), 3,
+     "all that any closed part encloses is solid, whichever way its faces are directed; without it and --nested, a part within "
+     "another is a hollow where its faces are directed inwards"},
+    {"nested", 0, MESH | CHECK | INFO, IN_SURFACE, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(nested), 3,
+     "closed parts within an odd number of others are hollows, whichever way their faces are directed"},
+    {"defects", 0, MESH | INFO, IN_SURFACE, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(defects), 0,
+     "write where the surface's defects are, as coloured points, lines and faces (.ply, .obj, .vtp); also when it is refused"},
 
     {"size-field", 0, MESH | INFO, IN_SIZING, OPTION_WORDS, "FIELD", NULL, false, 0, TEXTS_CAPACITY, NULL, MEMBER(size_fields), 0,
      "sizes over space: a Lua expression of x, y, z and d, the depth below the surface; a script (.lua) that returns one; or a "

@@ -38,6 +38,45 @@ static laves_result open_expression(session *run, const char *words, input *in) 
   return session_fail(run, result, "there is no file '%.150s', and it is no expression either: %.300s", words, reason);
 }
 
+static laves_surface_options surface_options(const settings *given, laves_defects *defects) {
+  laves_surface_options options = laves_surface_options_default();
+  options.winding = given->winding;
+  options.close_holes = given->close_holes;
+  options.overlap = given->unite ? LAVES_OVERLAP_UNION : given->nested ? LAVES_OVERLAP_NESTED : LAVES_OVERLAP_DIRECTION;
+  options.defects = defects;
+  return options;
+}
+
+/* What was found is written whether the surface is taken or refused. */
+static laves_result open_file(session *run, const char *path, input *in) {
+  const settings *given = run->given;
+  laves_defects *defects = NULL;
+  laves_result result = LAVES_OK;
+  if (given->defects) result = laves_defects_create(run->context, &defects, &run->error);
+  if (result != LAVES_OK) return result;
+  const laves_surface_options options = surface_options(given, defects);
+  result = laves_domain_from_file_with(run->context, path, &options, &in->domain, &run->error);
+  if (defects && (result == LAVES_OK || result == LAVES_ERROR_INPUT)) {
+    laves_error error = {0};
+    const laves_result written = laves_defects_write(run->context, defects, given->defects, &error);
+    in->defect_places = laves_defects_count(defects);
+    if (written == LAVES_OK && session_speaks(run)) {
+      text_buffer places;
+      progress_clear(&run->bar);
+      text_say("wrote %s (%s of defects)", given->defects, text_plural(&places, in->defect_places, "place"));
+    }
+    if (written != LAVES_OK && result == LAVES_OK) result = session_fail(run, written, "%s", error.text);
+  }
+  laves_defects_free(defects);
+  return result;
+}
+
+/* An expression is no surface, and what is said about surfaces would be without effect. */
+static bool tells_of_surfaces(const settings *given) {
+  const laves_surface_options usual = laves_surface_options_default();
+  return given->winding != usual.winding || !given->close_holes || given->unite || given->nested || given->defects;
+}
+
 laves_result input_open(session *run, const char *words, input *in) {
   *in = (input){.text = words};
   const double start = progress_now();
@@ -45,9 +84,14 @@ laves_result input_open(session *run, const char *words, input *in) {
   laves_result result;
   if (stat(words, &status) == 0) {
     if (S_ISDIR(status.st_mode)) return session_fail(run, LAVES_ERROR_INPUT, "'%.200s' is a folder; name a file in it", words);
-    result = laves_domain_from_file(run->context, words, &in->domain, &run->error);
+    result = open_file(run, words, in);
   } else if (looks_like_path(words)) {
     return session_fail(run, LAVES_ERROR_INPUT, "the file '%.200s' does not exist", words);
+  } else if (tells_of_surfaces(run->given)) {
+    return session_fail(run, LAVES_ERROR_OPTION,
+                        "--winding, --close-holes, --union, --nested and --defects are about surface files; '%.200s' is an "
+                        "expression",
+                        words);
   } else {
     result = open_expression(run, words, in);
   }
@@ -88,6 +132,7 @@ double input_diagonal(const laves_domain_info *info) {
   return sqrt(sum);
 }
 
+static const char *const overlap_names[] = {"direction", "union", "nested"};
 static const char *const kind_names[] = {"surface", "implicit", "function"};
 
 /* "open_edge" and the like: the names of the enum in small letters. */
@@ -137,6 +182,12 @@ void input_write_json(json *out, const char *key, const input *in) {
     json_boolean(out, "closed", info->closed);
     json_boolean(out, "turned", info->turned);
     json_boolean(out, "winding", info->winding);
+    json_number(out, "winding_level", info->winding_level);
+    json_text(out, "overlap", overlap_names[info->overlap]);
+    json_integer(out, "open_edges_left", (int64_t)info->open_edges_left);
+    json_integer(out, "crossing_parts", (int64_t)info->crossing_parts);
+    json_integer(out, "nested_parts", (int64_t)info->nested_parts);
+    json_integer(out, "hollow_parts", (int64_t)info->hollow_parts);
     write_defects(out, info);
   }
   if (in->domain && info->format && (info->kind == LAVES_DOMAIN_SURFACE || info->tag_count > 0)) {

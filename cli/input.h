@@ -10,7 +10,8 @@ typedef struct input {
   const char *text; /* as given */
   laves_domain *domain;
   laves_domain_info info;
-  double seconds; /* to read it */
+  size_t defect_places; /* written to --defects */
+  double seconds;       /* to read it */
 } input;
 
 /* Opens what the words mean. Free the domain of `in` whatever the result. */

@@ -203,6 +203,13 @@ static bool parse_regions(const char *text, laves_regions *regions, char *wrong)
   return false;
 }
 
+static bool parse_switch(const char *text, bool *value, char *wrong) {
+  *value = strcmp(text, "yes") == 0;
+  if (*value || strcmp(text, "no") == 0) return true;
+  snprintf(wrong, SENTENCE_CAPACITY, "must be yes or no, not '%.30s'", text);
+  return false;
+}
+
 static bool parse_words(const option *row, const char *text, option_texts *list, char *wrong) {
   if (list->count == (int)row->high) {
     snprintf(wrong, SENTENCE_CAPACITY, "can be given %d times at most", list->count);
@@ -219,6 +226,8 @@ static bool store_value(const option *row, const char *text, settings *given, ch
     case OPTION_FLAG:
       *(bool *)member = true;
       return true;
+    case OPTION_SWITCH:
+      return parse_switch(text, member, wrong);
     case OPTION_WORD:
       *(const char **)member = text;
       return true;
@@ -375,6 +384,8 @@ options_outcome options_parse(const command *about, int count, char **words, set
   *given = (settings){.command = about->name,
                       .volume_length = -1,
                       .guarantee = 14.4,
+                      .winding = 0.5,
+                      .close_holes = true,
                       .grading = 0.3,
                       .feature_angle = 40,
                       .compress = 1,

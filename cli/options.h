@@ -35,6 +35,9 @@ typedef struct settings {
   option_texts outputs;
   const char *boundary, *json, *surface; /* NULL: not given */
   const char *certificate, *write_certificate;
+  const char *defects; /* NULL: not given */
+  double winding;      /* the number that inside exceeds */
+  bool close_holes, unite, nested;
   double size, relative_size; /* 0: not given */
   int64_t tets, vertices;     /* 0: not given */
   option_alignment alignment;
@@ -63,6 +66,7 @@ typedef struct settings {
 
 typedef enum option_kind {
   OPTION_FLAG,      /* bool */
+  OPTION_SWITCH,    /* bool: yes or no */
   OPTION_WORD,      /* const char * */
   OPTION_WORDS,     /* option_texts, of `high` at most */
   OPTION_REAL,      /* double */

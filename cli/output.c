@@ -93,8 +93,13 @@ laves_result outputs_plan_certificate(session *run, const char *source, outputs 
   return check_target(run, plan->certificate, source, true);
 }
 
+/* Of what goes beside the mesh: --defects, which may not be the input or a device, and --json. */
 laves_result outputs_check_json(session *run, const char *source) {
   const char *path = run->given->json;
+  if (run->given->defects) {
+    const laves_result result = check_target(run, run->given->defects, source, false);
+    if (result != LAVES_OK) return result;
+  }
   if (!path || strcmp(path, "-") == 0) return LAVES_OK;
   const laves_result result = check_target(run, path, source, true);
   run->json_refused = result != LAVES_OK;

@@ -25,6 +25,20 @@ static void say_defects(const laves_domain_info *info, bool all) {
   if (line[0]) text_say("  defects (places: laves info): %s", line);
 }
 
+/* What was made of parts that cross or lie within others, and what else could be. */
+static void say_parts(const laves_domain_info *info) {
+  text_buffer crossing, nested;
+  if (info->crossing_parts > 0)
+    text_say("  %s cross: %s", text_plural(&crossing, info->crossing_parts, "part"),
+             info->winding_level > 1 ? "solid is where enough of them overlap (--winding)"
+                                     : "their union is the solid (--winding 1.5: where two overlap)");
+  if (info->nested_parts == 0) return;
+  static const char *const ways[] = {"as their faces are directed (--union fills all, --nested goes by depth)",
+                                     "since all is filled (--union)", "by depth (--nested)"};
+  text_say("  %s within others, %zu of them hollow: %s", text_plural(&nested, info->nested_parts, "part"), info->hollow_parts,
+           ways[info->overlap]);
+}
+
 static void say_surface(const input *in) {
   const laves_domain_info *info = &in->info;
   text_buffer points, triangles, parts;
@@ -33,6 +47,7 @@ static void say_surface(const input *in) {
            text_plural(&parts, info->component_count, "part"), info->closed ? "closed" : "open");
   if (info->turned) text_say("  it was inside out and has been turned");
   if (info->winding) text_say("  inside is decided by the winding number, since the surface is not clean");
+  say_parts(info);
 }
 
 void summary_input(const input *in, bool all) {

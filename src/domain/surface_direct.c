@@ -138,8 +138,8 @@ bool laves__surface_direct_parts(laves__surface *s, const laves__crossings *c, l
   n.crossed = laves__alloc_zeroed(s->context, s->part_count, sizeof *n.crossed);
   n.votes = laves__alloc_zeroed(s->context, s->part_count, sizeof *n.votes);
   n.asked = laves__alloc(s->context, s->part_count, sizeof *n.asked);
-  const bool done = laves__part_faces_list(s, &n.faces) && n.parts && n.crossed && n.votes && n.asked &&
-                    find_crossing_parts(s, c, &n.crossing);
+  const bool done =
+      laves__part_faces_list(s, &n.faces) && n.parts && n.crossed && n.votes && n.asked && find_crossing_parts(s, c, &n.crossing);
   if (done) direct(&n, info, turned);
   laves__parts_free(n.parts);
   laves__part_faces_free(s->context, &n.faces);
