@@ -246,7 +246,7 @@ static bool solve_union(laves__surface *s, laves__crossings *c, laves_domain_inf
   if (!turn_inverted(s, inverted, keep, info)) goto clean_up;
   if (!part_with_walls(s, keep, c, info)) goto clean_up;
   mark_doubtful(s);
-  if (!laves__surface_find_segments(s, c)) goto clean_up;
+  if (!laves__surface_cut(s, c)) goto clean_up;
   laves__surface_measure(s, &info->volume, &info->area);
   if (c->count > 0 || s->level > 1) info->volume = laves__surface_union_volume(s);
   done = true;
@@ -270,7 +270,7 @@ static bool solve_open(laves__surface *s, laves__crossings *c, laves_domain_info
   if (!part_with_walls(s, keep, c, info)) goto clean_up;
   mark_doubtful(s);
   s->winding.far_factor = far_factor_of_caps;
-  done = laves__surface_find_segments(s, c);
+  done = laves__surface_cut(s, c);
 clean_up:
   laves__free(s->context, keep, count, sizeof *keep);
   return done;

@@ -8,6 +8,7 @@
  *   surface_winding.c   how often the surface winds round a point
  *   surface_patch.c     which triangles bound the union of what is enclosed
  *   surface_mend.c      cracks, repeats and directions of surfaces that are not closed
+ *   surface_cut.c       what of triangles that meet others bounds the solid
  *   surface_direct.c    which way parts within parts face
  *   surface_open.c      what stays open: {winding number = 1/2}
  *   surface_part.c      closed parts, which can be regions of the mesh
@@ -70,6 +71,7 @@ typedef struct laves__nearest {
   uint32_t slot;    /* LAVES__NONE: nothing nearer than the start value of distance2 */
 } laves__nearest;
 
+laves__triangle laves__triangle_of(laves__vec3 a, laves__vec3 b, laves__vec3 c);
 double laves__triangle_distance2(const laves__triangle *t, laves__vec3 p);
 /* The closest point of the triangle; on receives which part of it that is. */
 laves__vec3 laves__triangle_closest(const laves__triangle *t, laves__vec3 p, int *on);
@@ -125,12 +127,6 @@ double laves__winding_number(const laves__winding *w, laves__vec3 p, uint32_t sk
  * all over and by a wide margin, so that near it the normal tells the sign. */
 enum { LAVES__PARTIAL = 1, LAVES__PLAIN = 2 };
 
-/* Where a partial face meets another. */
-typedef struct laves__segment {
-  laves__vec3 ends[2];
-  uint32_t other;
-} laves__segment;
-
 typedef struct laves__surface {
   laves_context *context;
   double level;                  /* the solid is where the winding number exceeds it */
@@ -152,11 +148,11 @@ typedef struct laves__surface {
   uint8_t *face_flags;   /* [face_capacity] */
   bool *doubtful_points; /* [point_capacity] points of partial faces, of edges without one other face, of several fans */
   laves__winding winding;
-  laves__bvh all;         /* the tree behind `winding` when walls were left out of `bvh`; else empty */
-  uint32_t *winding_slot; /* [face_capacity] slot in `all` of each face; NULL: the same */
-  laves__segment *segments;
-  uint32_t *segment_starts; /* [face_capacity + 1] */
-  size_t segment_count;
+  laves__bvh all;          /* the tree behind `winding` when walls were left out of `bvh`; else empty */
+  uint32_t *winding_slot;  /* [face_capacity] slot in `all` of each face; NULL: the same */
+  laves__triangle *pieces; /* what of partial faces bounds the solid */
+  uint32_t *piece_starts;  /* [face_capacity + 2] those of face f stand in pieces[piece_starts[f] .. piece_starts[f + 1]) */
+  size_t piece_count;
   /* Parts, as laves__surface_find_parts() tells; NULL: it is all one. */
   uint32_t *part; /* [part_capacity] of each face, in the order of the tree behind `winding` */
   size_t part_capacity, part_count;
@@ -239,7 +235,12 @@ double laves__surface_mean_winding(const laves__surface *s, uint32_t slot);
 /* keep[f]: face f bounds the solid {winding number >= 1}, or is partial; inverted[f]: it bounds {<= -1} instead. Both
  * bool[face_count]. False when memory is short. */
 bool laves__surface_find_walls(const laves__surface *s, bool *keep, bool *inverted);
-bool laves__surface_find_segments(laves__surface *s, const laves__crossings *c);
+
+/* ---- pieces ---- */
+
+/* Cuts partial faces where they meet others and keeps the pieces that bound the solid. False when memory is short or on a
+ * cancel. */
+bool laves__surface_cut(laves__surface *s, const laves__crossings *crossings);
 
 /* ---- parts ---- */
 

@@ -215,7 +215,7 @@ static uint32_t make_node(builder *b, range whole, int depth) {
   return index;
 }
 
-static laves__triangle make_triangle(laves__vec3 a, laves__vec3 b, laves__vec3 c) {
+laves__triangle laves__triangle_of(laves__vec3 a, laves__vec3 b, laves__vec3 c) {
   const laves__vec3 ab = v3_sub(b, a), ac = v3_sub(c, a);
   const laves__vec3 n = v3_cross(ab, ac);
   const double longest2 = fmax(v3_norm2(ab), v3_norm2(ac));
@@ -252,7 +252,7 @@ bool laves__bvh_build(laves_context *context, const laves__vec3 *points, const u
   for (size_t slot = 0; slot < face_count; slot++) {
     const uint32_t *f = faces[items[slot].face];
     order[slot] = items[slot].face;
-    triangles[slot] = make_triangle(points[f[0]], points[f[1]], points[f[2]]);
+    triangles[slot] = laves__triangle_of(points[f[0]], points[f[1]], points[f[2]]);
   }
   bvh->triangles = triangles;
   bvh->count = face_count;

@@ -9,9 +9,8 @@
 #include "domain/features.h"
 #include "domain/surface.h"
 
-/* How far from a face's point towards its middle the winding number is asked, in parts of the way: far more than rounding,
- * far less than what a mesh resolves. */
-static const double inwards = 1e-4;
+/* A point of a face is on a piece of it that is so near, as a share of the diagonal: more than rounding, less than matters. */
+static const double on_piece = 1e-9;
 
 /* Directed outwards, not of length one. */
 static laves__vec3 feature_normal(const laves__surface *s, uint32_t slot, int on) {
@@ -41,8 +40,6 @@ static double far_distance(laves__vec3 p) {
 
 /* ---- where the winding number decides ---- */
 
-static uint32_t winding_slot(const laves__surface *s, uint32_t slot) { return s->winding_slot ? s->winding_slot[slot] : slot; }
-
 /* Whether the normal at this feature cannot be trusted with the sign. */
 static bool is_doubtful(const laves__surface *s, uint32_t slot, int on) {
   if (!s->needs_winding) return false;
@@ -57,54 +54,40 @@ static bool is_inside(const laves__surface *s, laves__vec3 p) {
   return laves__winding_number(&s->winding, p, LAVES__NONE, LAVES__NONE) > s->level;
 }
 
-/* Whether a partial face bounds the solid at its point q. With the face left out the number is the mean of both sides, so
- * 1/2 says outside before and inside behind. The question is asked a little inwards, off the edges. */
-bool laves__surface_bounds_at(const laves__surface *s, uint32_t slot, laves__vec3 q) {
-  if (!(s->face_flags[slot] & LAVES__PARTIAL)) return true;
-  const laves__triangle *t = &s->bvh.triangles[slot];
-  const laves__vec3 middle = v3_scale(v3_add(t->a, v3_add(t->b, t->c)), 1.0 / 3);
-  const double mean = laves__winding_number(&s->winding, v3_lerp(q, middle, inwards), winding_slot(s, slot), LAVES__NONE);
-  return fabs(mean - s->level) < 0.5;
-}
-
-/* The same for a point of the segment where two faces meet; here the mean is that of four sides, of -1 to 1 about it. */
-static bool bounds_at_crossing(const laves__surface *s, uint32_t slot, uint32_t other, laves__vec3 q) {
-  const double mean = laves__winding_number(&s->winding, q, winding_slot(s, slot), winding_slot(s, other));
-  return fabs(mean - s->level) < 1;
-}
-
-static laves__vec3 closest_on_segment(const laves__segment *g, laves__vec3 p) {
-  const laves__vec3 uv = v3_sub(g->ends[1], g->ends[0]);
-  const double t = v3_dot(v3_sub(p, g->ends[0]), uv) / v3_norm2(uv);
-  return t > 0 ? v3_lerp(g->ends[0], g->ends[1], t < 1 ? t : 1) : g->ends[0];
-}
-
-/* The closest point of what counts of a face: its own closest point, or one where it meets others. `other` receives the
- * face met there, or LAVES__NONE. Squared distance; INFINITY when nothing counts. */
-static double closest_part(const laves__surface *s, uint32_t slot, laves__vec3 p, laves__vec3 *foot, int *on, uint32_t *other) {
-  *foot = laves__triangle_closest(&s->bvh.triangles[slot], p, on);
-  *other = LAVES__NONE;
-  if (laves__surface_bounds_at(s, slot, *foot)) return v3_norm2(v3_sub(p, *foot));
+/* The closest point of what counts of a face, and whether it lies amid one of its pieces, so that the face's normal tells the
+ * sign. Squared distance; INFINITY when nothing counts. */
+static double closest_part(const laves__surface *s, uint32_t slot, laves__vec3 p, laves__vec3 *foot, bool *amid) {
+  int on;
+  if (!(s->face_flags[slot] & LAVES__PARTIAL)) {
+    *foot = laves__triangle_closest(&s->bvh.triangles[slot], p, &on);
+    *amid = on == LAVES__ON_FACE;
+    return v3_norm2(v3_sub(p, *foot));
+  }
   double least = INFINITY;
-  for (uint32_t i = s->segment_starts[slot]; i < s->segment_starts[slot + 1]; i++) {
-    const laves__segment *g = &s->segments[i];
-    const laves__vec3 q = closest_on_segment(g, p);
+  for (uint32_t i = s->piece_starts[slot]; i < s->piece_starts[slot + 1]; i++) {
+    const laves__vec3 q = laves__triangle_closest(&s->pieces[i], p, &on);
     const double d2 = v3_norm2(v3_sub(p, q));
-    if (d2 >= least || !bounds_at_crossing(s, slot, g->other, q)) continue;
+    if (d2 >= least) continue;
     least = d2;
     *foot = q;
-    *other = g->other;
+    *amid = on == LAVES__ON_FACE;
   }
   return least;
+}
+
+bool laves__surface_bounds_at(const laves__surface *s, uint32_t slot, laves__vec3 q) {
+  if (!(s->face_flags[slot] & LAVES__PARTIAL)) return true;
+  laves__vec3 foot;
+  bool amid;
+  return sqrt(closest_part(s, slot, q, &foot, &amid)) <= on_piece * s->diagonal;
 }
 
 static double measure_part(void *user, uint32_t slot, double distance2, laves__vec3 p) {
   const laves__surface *s = user;
   if (!s->needs_winding || !(s->face_flags[slot] & LAVES__PARTIAL)) return distance2;
   laves__vec3 foot;
-  int on;
-  uint32_t other;
-  return closest_part(s, slot, p, &foot, &on, &other);
+  bool amid;
+  return closest_part(s, slot, p, &foot, &amid);
 }
 
 /* Like nearest_from, with hidden parts of partial faces left out. */
@@ -116,9 +99,18 @@ static laves__nearest nearest_part(const laves__surface *s, laves__vec3 p, doubl
 
 static double signed_distance_by_winding(const laves__surface *s, laves__vec3 p, const laves__nearest *n) {
   laves__nearest part = *n;
-  if ((s->face_flags[n->slot] & LAVES__PARTIAL) != 0) part = nearest_part(s, p, INFINITY);
-  const double distance = sqrt(part.slot == LAVES__NONE ? n->distance2 : part.distance2);
-  return is_inside(s, p) ? -distance : distance;
+  laves__vec3 foot;
+  bool amid = false;
+  if ((s->face_flags[n->slot] & LAVES__PARTIAL) != 0) {
+    part = nearest_part(s, p, INFINITY);
+    if (part.slot == LAVES__NONE)
+      part = *n;
+    else
+      closest_part(s, part.slot, p, &foot, &amid);
+  }
+  const double distance = sqrt(part.distance2);
+  const bool inside = amid ? v3_dot(v3_sub(p, foot), s->face_normals[part.slot]) < 0 : is_inside(s, p);
+  return inside ? -distance : distance;
 }
 
 /* ---- open surfaces ---- */
@@ -152,9 +144,8 @@ static bool open_project(const laves__surface *s, laves__vec3 p, double reach, u
   *hint = n.slot;
   if (guess < distance && laves__open_project(s, p, e, guess, uphill, distance, foot, normal)) return true;
   if (n.slot == LAVES__NONE) return false;
-  int on;
-  uint32_t other;
-  closest_part(s, n.slot, p, foot, &on, &other);
+  bool amid;
+  closest_part(s, n.slot, p, foot, &amid);
   *normal = s->face_normals[n.slot];
   return true;
 }
@@ -195,19 +186,19 @@ static bool project(const void *self, laves__vec3 point, double reach, uint32_t 
   laves__nearest n = nearest_from(s, point, reach * reach, *hint);
   if (n.slot == LAVES__NONE) return s->open && open_project(s, point, reach, hint, foot, normal);
   int on;
-  uint32_t other = LAVES__NONE;
+  bool amid = true;
   if (s->open) {
     *foot = laves__triangle_closest(&s->bvh.triangles[n.slot], point, &on);
     if (!is_plain(s, point, &n, on)) return open_project(s, point, reach, hint, foot, normal);
   } else if (s->needs_winding && (s->face_flags[n.slot] & LAVES__PARTIAL) != 0) {
     n = nearest_part(s, point, reach * reach);
     if (n.slot == LAVES__NONE) return false;
-    closest_part(s, n.slot, point, foot, &on, &other);
+    closest_part(s, n.slot, point, foot, &amid);
+    on = LAVES__ON_FACE;
   } else {
     *foot = laves__triangle_closest(&s->bvh.triangles[n.slot], point, &on);
   }
-  const laves__vec3 n0 = feature_normal(s, n.slot, on);
-  *normal = v3_unit(other == LAVES__NONE ? n0 : v3_add(s->face_normals[n.slot], s->face_normals[other]));
+  *normal = v3_unit(feature_normal(s, n.slot, on));
   *hint = n.slot;
   return true;
 }
@@ -249,13 +240,13 @@ bool laves__surface_project_part(const laves__surface *s, const laves__part *par
     laves__bvh_nearest_part(&s->bvh, point, measure_labelled, (void *)&search, &n);
     if (n.slot == LAVES__NONE) return false;
   }
-  int on;
-  uint32_t other = LAVES__NONE;
+  int on = LAVES__ON_FACE;
+  bool amid;
   if (s->needs_winding && (s->face_flags[n.slot] & LAVES__PARTIAL))
-    closest_part(s, n.slot, point, foot, &on, &other);
+    closest_part(s, n.slot, point, foot, &amid);
   else
     *foot = laves__triangle_closest(&s->bvh.triangles[n.slot], point, &on);
-  *normal = v3_unit(other == LAVES__NONE ? part_normal(s, part, n.slot, on) : s->face_normals[n.slot]);
+  *normal = v3_unit(part_normal(s, part, n.slot, on));
   *hint = n.slot;
   return true;
 }
@@ -329,8 +320,8 @@ void laves__surface_free(laves_context *context, void *self) {
   laves__free(context, s->face_flags, s->face_capacity, sizeof *s->face_flags);
   laves__free(context, s->doubtful_points, s->point_capacity, sizeof *s->doubtful_points);
   laves__free(context, s->winding_slot, s->face_capacity, sizeof *s->winding_slot);
-  laves__free(context, s->segments, s->segment_count, sizeof *s->segments);
-  laves__free(context, s->segment_starts, s->face_capacity + 1, sizeof *s->segment_starts);
+  laves__free(context, s->pieces, s->piece_count, sizeof *s->pieces);
+  laves__free(context, s->piece_starts, s->face_capacity + 2, sizeof *s->piece_starts);
   laves__free(context, s->face_normals, s->face_capacity, sizeof *s->face_normals);
   laves__free(context, s->point_normals, s->point_capacity, sizeof *s->point_normals);
   laves__free(context, s, 1, sizeof *s);

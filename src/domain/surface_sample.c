@@ -130,27 +130,13 @@ size_t laves__surface_thin_places(const void *self, laves_thin_kind kind, laves_
 
 /* ---- volume of a union ---- */
 
-enum { PARTS = 8 };
-
-/* The share of six times the volume under a partial face: of its 64 parts those that bound the solid. */
-static double partial_volume6(const laves__surface *s, uint32_t f) {
-  const laves__triangle *t = &s->bvh.triangles[f];
-  const laves__vec3 u = v3_scale(v3_sub(t->b, t->a), 1.0 / PARTS), v = v3_scale(v3_sub(t->c, t->a), 1.0 / PARTS);
-  int bounding = 0;
-  for (int i = 0; i < PARTS; i++)
-    for (int j = 0; i + j < PARTS; j++) {
-      const laves__vec3 corner = v3_add(t->a, v3_add(v3_scale(u, i), v3_scale(v, j)));
-      bounding += laves__surface_bounds_at(s, f, v3_mad(corner, v3_add(u, v), 1.0 / 3));
-      if (i + j + 1 < PARTS) bounding += laves__surface_bounds_at(s, f, v3_mad(corner, v3_add(u, v), 2.0 / 3));
-    }
-  return v3_dot(t->a, v3_cross(t->b, t->c)) * bounding / (PARTS * PARTS);
-}
-
 double laves__surface_union_volume(const laves__surface *s) {
   double volume6 = 0;
   for (uint32_t f = 0; f < s->face_count; f++) {
+    if (s->face_flags[f] & LAVES__PARTIAL) continue;
     const laves__triangle *t = &s->bvh.triangles[f];
-    volume6 += (s->face_flags[f] & LAVES__PARTIAL) ? partial_volume6(s, f) : v3_dot(t->a, v3_cross(t->b, t->c));
+    volume6 += v3_dot(t->a, v3_cross(t->b, t->c));
   }
+  for (size_t i = 0; i < s->piece_count; i++) volume6 += v3_dot(s->pieces[i].a, v3_cross(s->pieces[i].b, s->pieces[i].c));
   return volume6 / 6;
 }

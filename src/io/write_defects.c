@@ -128,7 +128,10 @@ static void write_obj(laves__output *out, const laves_defects *defects) {
       named = true;
       obj_corners(out, item);
       /* Negative indices count back from the last point. */
-      laves__output_printf(out, "%s", item->corner_count == 1 ? "p -1\n" : item->corner_count == 2 ? "l -2 -1\n" : "f -3 -2 -1\n");
+      laves__output_printf(out, "%s",
+                           item->corner_count == 1   ? "p -1\n"
+                           : item->corner_count == 2 ? "l -2 -1\n"
+                                                     : "f -3 -2 -1\n");
     }
   }
 }
@@ -181,7 +184,8 @@ static void write_vtp(laves__output *out, const laves_defects *defects) {
   laves__output_printf(out, "</DataArray>\n</Points>\n");
   laves__output_printf(out, "<CellData Scalars=\"color\">\n<DataArray type=\"Int32\" Name=\"defect\" format=\"ascii\">\n");
   vtp_cells(out, defects, vtp_kind);
-  laves__output_printf(out, "</DataArray>\n<DataArray type=\"UInt8\" Name=\"color\" NumberOfComponents=\"3\" format=\"ascii\">\n");
+  laves__output_printf(out,
+                       "</DataArray>\n<DataArray type=\"UInt8\" Name=\"color\" NumberOfComponents=\"3\" format=\"ascii\">\n");
   vtp_cells(out, defects, vtp_color);
   laves__output_printf(out, "</DataArray>\n</CellData>\n");
   vtp_group(out, defects, "Verts", 1);

@@ -86,7 +86,8 @@ static void parts_within_parts(void **unused) {
     shape s = onion(rows[i].balls, rows[i].turned);
     made m = make(context, &s, rows[i].overlap, 0.5);
     assert_int_equal(m.result, LAVES_OK);
-    if (shells(m.domain, rows[i].balls) != rows[i].inside) fail_msg("row %zu: inside %x", i, (unsigned)shells(m.domain, rows[i].balls));
+    if (shells(m.domain, rows[i].balls) != rows[i].inside)
+      fail_msg("row %zu: inside %x", i, (unsigned)shells(m.domain, rows[i].balls));
     assert_int_equal(m.info.nested_parts, rows[i].nested);
     assert_int_equal(m.info.hollow_parts, rows[i].hollow);
     assert_int_equal(m.info.crossing_parts, 0);
@@ -345,7 +346,9 @@ static void places_are_written(void **unused) {
       char elements[40];
       snprintf(elements, sizeof elements, "element edge %zu\n", edges);
       assert_non_null(strstr(bytes, elements));
-      snprintf(elements, sizeof elements, "element face %zu\n", all - edges - places_of(options.defects, LAVES_DEFECT_REPEATED_POINT, 1) - places_of(options.defects, LAVES_DEFECT_UNUSED_POINT, 1));
+      snprintf(elements, sizeof elements, "element face %zu\n",
+               all - edges - places_of(options.defects, LAVES_DEFECT_REPEATED_POINT, 1) -
+                   places_of(options.defects, LAVES_DEFECT_UNUSED_POINT, 1));
       assert_non_null(strstr(bytes, elements));
     }
     laves__free(context, bytes, length + 1, 1);
@@ -373,10 +376,14 @@ static void places_are_written(void **unused) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(parts_within_parts),           cmocka_unit_test(hollows_of_parts_that_cross),
-      cmocka_unit_test(where_two_overlap),            cmocka_unit_test(caps_stand_where_the_level_is),
-      cmocka_unit_test(holes_are_refused_on_request), cmocka_unit_test(options_are_checked),
-      cmocka_unit_test(each_defect_has_a_place),      cmocka_unit_test(refused_surfaces_have_places_too),
+      cmocka_unit_test(parts_within_parts),
+      cmocka_unit_test(hollows_of_parts_that_cross),
+      cmocka_unit_test(where_two_overlap),
+      cmocka_unit_test(caps_stand_where_the_level_is),
+      cmocka_unit_test(holes_are_refused_on_request),
+      cmocka_unit_test(options_are_checked),
+      cmocka_unit_test(each_defect_has_a_place),
+      cmocka_unit_test(refused_surfaces_have_places_too),
       cmocka_unit_test(places_are_written),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
