@@ -83,6 +83,24 @@ part features-cylinders crossed_cylinders 20k --view -40,25
 part features-drilled drilled_cube 25k --view -50,30
 sized features-close '--view -45,35 --size 480x340 --creases 2.4' demo/bracket.obj --size 0.12 --feature-elements 2
 
+# For docs/dirty.md: three balls within one another, the middle one facing inwards; and a box without its lid.
+balls() {
+  awk 'BEGIN { n = 0; for (k = 0; k < 3; k++) { r = 1 - 0.32 * k; pi = 3.14159265; print "o ball" k
+    for (i = 0; i <= 16; i++) for (j = 0; j < 32; j++) print "v", r*sin(pi*i/16)*cos(pi*j/16), r*sin(pi*i/16)*sin(pi*j/16), -r*cos(pi*i/16)
+    for (i = 0; i < 16; i++) for (j = 0; j < 32; j++) { a = n+32*i+j+1; b = n+32*i+(j+1)%32+1; c = b+32; d = a+32
+      if (k == 1) print "f", d, c, b, a; else print "f", a, b, c, d }
+    n += 17*32 } }' > "$meshes/balls.obj"
+}
+balls
+for how in direction union; do
+  sized "dirty-$how" '--cut y --view -75,15 --size 320x300 --color class' "$meshes/balls.obj" --size 0.08 \
+    $([ $how = direction ] || echo --$how)
+done
+printf 'OFF\n8 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n' > "$meshes/box.off"
+for level in 0.3 0.5 0.7; do
+  sized "dirty-$level" '--cut y --view -85,10 --size 320x300 --color class' "$meshes/box.off" --size 0.05 --winding $level
+done
+
 # The worst configurations, for docs/proof.md; the test that proves the bounds writes them.
 "${program%/*}/tests/proof" --draw "$meshes" > "$meshes/worst.txt"
 "$program" view "$meshes/smallest-angle.vtu" --color dihedral --view=-135,-10 --size 400x240 -o docs/images/proof-smallest.png
