@@ -1,7 +1,7 @@
 /* Pieces of partial faces: which parts of a face that meets others bound the solid.
  *
- * In: the surface, its crossings, its winding number, which faces are partial.  Out: for each partial face the triangles of it that
- * bound the solid; the rest of it is as good as absent.
+ * In: the surface, its crossings, its winding number, which faces are partial.  Out: for each partial face the triangles of it
+ * that bound the solid; the rest of it is as good as absent.
  *
  *   +-------------+      A face is cut along each segment in which it meets another, and along the edges of faces that lie
  *   |     /       |      upon it. A cut goes on to the border of the piece that the segment passes through, so pieces stay
@@ -42,7 +42,8 @@ typedef struct piece {
 
 typedef struct cutter {
   laves__surface *s;
-  polygon *polygons; /* of the face at hand */
+  uint32_t *starts, *others; /* the faces that face f meets stand in others[starts[f] .. starts[f + 1]) */
+  polygon *polygons;         /* of the face at hand */
   size_t polygon_count, polygon_capacity;
   piece *pieces; /* of all faces, face by face */
   size_t piece_count, piece_capacity;
@@ -140,14 +141,14 @@ static bool keep_polygons(cutter *c, uint32_t slot) {
   return true;
 }
 
-static bool cut_face(cutter *c, uint32_t slot, const uint32_t *others, size_t count) {
+static bool cut_face(cutter *c, uint32_t slot) {
   const laves__triangle *t = &c->s->bvh.triangles[slot];
   const laves__vec3 n = v3_unit(v3_cross(v3_sub(t->b, t->a), v3_sub(t->c, t->a)));
   if (!laves__grow(c->s->context, &c->polygons, &c->polygon_capacity, 1, sizeof *c->polygons)) return false;
   c->polygons[0] = (polygon){{t->a, t->b, t->c}, 3};
   c->polygon_count = 1;
-  for (size_t i = 0; i < count; i++)
-    if (!cut_by(c, t, n, &c->s->bvh.triangles[others[i]])) return false;
+  for (uint32_t i = c->starts[slot]; i < c->starts[slot + 1]; i++)
+    if (!cut_by(c, t, n, &c->s->bvh.triangles[c->others[i]])) return false;
   return keep_polygons(c, slot);
 }
 
@@ -162,6 +163,17 @@ static double inner_radius(const laves__vec3 p[3]) {
 static bool bounds_at(const laves__surface *s, laves__vec3 p, laves__vec3 n, double off) {
   return laves__winding_number(&s->winding, v3_mad(p, n, off), LAVES__NONE, LAVES__NONE) <= s->level &&
          laves__winding_number(&s->winding, v3_mad(p, n, -off), LAVES__NONE, LAVES__NONE) > s->level;
+}
+
+/* Whether a face that comes before this one lies upon it at p and looks the same way: then that one counts. */
+static bool is_doubled(const cutter *c, uint32_t slot, laves__vec3 p, laves__vec3 n) {
+  for (uint32_t i = c->starts[slot]; i < c->starts[slot + 1]; i++) {
+    const uint32_t other = c->others[i];
+    const laves__triangle *t = &c->s->bvh.triangles[other];
+    if (other > slot || !(v3_dot(v3_cross(v3_sub(t->b, t->a), v3_sub(t->c, t->a)), n) > 0)) continue;
+    if (laves__triangle_distance2(t, p) <= c->eps * c->eps) return true;
+  }
+  return false;
 }
 
 /* Asks in the middle and near the corners. */
@@ -180,8 +192,8 @@ static void judge_pieces(void *user, size_t begin, size_t end, int worker) {
     const laves__vec3 middle = v3_scale(v3_add(q[0], v3_add(q[1], q[2])), 1.0 / 3);
     const double radius = inner_radius(q);
     p->verdict = HIDDEN;
-    if (!(radius > c->least_radius)) continue;
-    p->verdict = c->ask_around ? ask_around(c->s, q, middle, n, step_off * radius)
+    if (!(radius > c->least_radius) || is_doubled(c, p->slot, middle, n)) continue;
+    p->verdict = c->ask_around                                   ? ask_around(c->s, q, middle, n, step_off * radius)
                  : bounds_at(c->s, middle, n, step_off * radius) ? BOUNDS
                                                                  : HIDDEN;
   }
@@ -230,30 +242,33 @@ static bool keep(cutter *c) {
   for (size_t f = 0; f < s->face_count; f++) s->piece_starts[f + 2] += s->piece_starts[f + 1];
   for (size_t i = 0; i < c->piece_count; i++) {
     const piece *p = &c->pieces[i];
-    if (p->verdict == BOUNDS) s->pieces[s->piece_starts[p->slot + 1]++] = laves__triangle_of(p->corner[0], p->corner[1], p->corner[2]);
+    if (p->verdict == BOUNDS)
+      s->pieces[s->piece_starts[p->slot + 1]++] = laves__triangle_of(p->corner[0], p->corner[1], p->corner[2]);
   }
   return true;
 }
 
-/* The faces that each face meets: those of f stand in others[starts[f] .. starts[f + 1]). */
-static bool list_others(const laves__surface *s, const laves__crossings *crossings, uint32_t *starts, uint32_t *others) {
-  for (size_t i = 0; i < 2 * crossings->count; i++) starts[crossings->pairs[i / 2][i % 2] + 2]++;
-  for (size_t f = 0; f < s->face_count; f++) starts[f + 2] += starts[f + 1];
+static bool list_others(cutter *c, const laves__crossings *crossings) {
+  const laves__surface *s = c->s;
+  c->starts = laves__alloc_zeroed(s->context, s->face_count + 2, sizeof *c->starts);
+  c->others = laves__alloc(s->context, 2 * crossings->count, sizeof *c->others);
+  if (!c->starts || !c->others) return false;
+  /* starts[f + 1] runs from the start of f to its end. */
+  for (size_t i = 0; i < 2 * crossings->count; i++) c->starts[crossings->pairs[i / 2][i % 2] + 2]++;
+  for (size_t f = 0; f < s->face_count; f++) c->starts[f + 2] += c->starts[f + 1];
   for (size_t i = 0; i < 2 * crossings->count; i++)
-    others[starts[crossings->pairs[i / 2][i % 2] + 1]++] = crossings->pairs[i / 2][1 - i % 2];
+    c->others[c->starts[crossings->pairs[i / 2][i % 2] + 1]++] = crossings->pairs[i / 2][1 - i % 2];
   return true;
 }
 
 bool laves__surface_cut(laves__surface *s, const laves__crossings *crossings) {
   cutter c = {.s = s, .eps = rounding * s->diagonal, .least_radius = least_radius * s->diagonal};
-  uint32_t *starts = laves__alloc_zeroed(s->context, s->face_count + 2, sizeof *starts);
-  uint32_t *others = laves__alloc(s->context, 2 * crossings->count, sizeof *others);
-  bool done = starts && others && list_others(s, crossings, starts, others);
+  bool done = list_others(&c, crossings);
   for (uint32_t f = 0; done && f < s->face_count; f++)
-    if (s->face_flags[f] & LAVES__PARTIAL) done = cut_face(&c, f, others + starts[f], starts[f + 1] - starts[f]);
+    if (s->face_flags[f] & LAVES__PARTIAL) done = cut_face(&c, f);
   done = done && judge(&c) && keep(&c);
-  laves__free(s->context, starts, s->face_count + 2, sizeof *starts);
-  laves__free(s->context, others, 2 * crossings->count, sizeof *others);
+  laves__free(s->context, c.starts, s->face_count + 2, sizeof *c.starts);
+  laves__free(s->context, c.others, 2 * crossings->count, sizeof *c.others);
   laves__free(s->context, c.polygons, c.polygon_capacity, sizeof *c.polygons);
   laves__free(s->context, c.pieces, c.piece_capacity, sizeof *c.pieces);
   return done;

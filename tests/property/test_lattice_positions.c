@@ -53,6 +53,29 @@ static void boxes_on_lattice_planes(void **state) {
   }
 }
 
+/* Two boxes on lattice planes whose faces lie upon each other in part or in whole: side by side, through, within, twice the same.
+ */
+static void boxes_upon_each_other(void **state) {
+  (void)state;
+  static const double second[][6] = {{8, -8, -8, 24, 8, 8},  {0, -8, -8, 16, 8, 8}, {-4, -4, -8, 4, 4, 8}, {-8, -8, -8, 8, 8, 8},
+                                     {8, -4, -4, 16, 4, 4},  {-4, -4, 8, 4, 4, 16}, {8, 8, -8, 24, 24, 8}, {8, 8, 8, 24, 24, 24},
+                                     {-8, -8, -2, 8, 8, -2}, {-8, -8, 0, 0, 0, 8}};
+  for (size_t i = 0; i < LAVES__COUNT_OF(second); i++)
+    for (int turned = 0; turned < 2; turned++) {
+      char name[100];
+      if (turned && memcmp(second[i], (const double[6]){-8, -8, -8, 8, 8, 8}, sizeof second[i]) == 0)
+        continue; /* nothing is left */
+      snprintf(name, sizeof name, "boxes %zu%s", i, turned ? ", one inside out" : "");
+      shape box = shape_box((const double[3]){-8, -8, -8}, (const double[3]){8, 8, 8}, 1);
+      shape more = shape_box(second[i], second[i] + 3, 1);
+      if (turned) shape_turn_over(&more);
+      shape_append(&box, &more);
+      mesh_shape(&box, whole, name);
+      shape_free(&box);
+      shape_free(&more);
+    }
+}
+
 /* Steps and slits whose planes all pass through lattice vertices; slits of no width. */
 static void coplanar_parts(void **state) {
   (void)state;
@@ -132,10 +155,8 @@ static void spheres_through_vertices(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(boxes_on_lattice_planes),
-      cmocka_unit_test(coplanar_parts),
-      cmocka_unit_test(plateaus_of_zero),
-      cmocka_unit_test(spheres_through_vertices),
+      cmocka_unit_test(boxes_on_lattice_planes), cmocka_unit_test(boxes_upon_each_other),    cmocka_unit_test(coplanar_parts),
+      cmocka_unit_test(plateaus_of_zero),        cmocka_unit_test(spheres_through_vertices),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

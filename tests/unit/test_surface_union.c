@@ -205,9 +205,52 @@ static void thin_places_of_a_plate(void **unused) {
   laves_context_free(context);
 }
 
+/* Boxes with faces in common planes, some of them the same faces: the union's volume to rounding, and each sign off the planes.
+ */
+static void boxes_in_common_planes(void **unused) {
+  (void)unused;
+  static const struct {
+    double lower[3], upper[3], volume;
+  } rows[] = {
+      {{1, 0, 0}, {3, 2, 2}, 12},           /* half over, four faces in common planes */
+      {{0.5, 0, 0}, {1.5, 2, 2}, 8},        /* within, as far as its ends */
+      {{0.5, 0.5, 0.5}, {1.5, 1.5, 2}, 8},  /* within, and a face upon a face */
+      {{0.5, 0.5, 1}, {1.5, 1.5, 3}, 9},    /* through a face */
+      {{2, 0, 0}, {4, 2, 2}, 16},           /* side by side */
+      {{2, 0.5, 0.5}, {4, 1.5, 1.5}, 10},   /* side by side, a small face on a large one */
+      {{0.25, 0, 0}, {2, 2, 1.75}, 8},      /* a corner in common */
+      {{-0.5, -0.5, 0}, {2.5, 2.5, 2}, 18}, /* around, as high */
+  };
+  laves_context *context = laves_context_create(NULL);
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    shape s = box_at(0, 0, 0, 2, 2, 2), more = shape_box(rows[i].lower, rows[i].upper, 3);
+    shape_append(&s, &more);
+    laves_domain *domain = build(context, &s);
+    if (!(fabs(domain->info.volume / rows[i].volume - 1) < 1e-6)) fail_msg("row %zu: volume %.9g", i, domain->info.volume);
+    uint64_t state = 5 + i;
+    for (int k = 0; k < 2000; k++) {
+      const laves__vec3 p = random_point(&state, (laves__box3){v3(-1, -1, -1), v3(5, 4, 4)});
+      const double at[3] = {p.x, p.y, p.z};
+      bool in_first = true, in_second = true;
+      for (int axis = 0; axis < 3; axis++) {
+        in_first = in_first && at[axis] > 0 && at[axis] < 2;
+        in_second = in_second && at[axis] > rows[i].lower[axis] && at[axis] < rows[i].upper[axis];
+      }
+      const double value = value_at(domain, p.x, p.y, p.z);
+      if ((value < 0) != (in_first || in_second)) fail_msg("row %zu: %.9g at %g %g %g", i, value, p.x, p.y, p.z);
+    }
+    laves_domain_free(domain);
+    shape_free(&s);
+    shape_free(&more);
+  }
+  assert_int_equal(laves_context_bytes(context), 0);
+  laves_context_free(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(overlapping_boxes_are_their_union),
+      cmocka_unit_test(boxes_in_common_planes),
       cmocka_unit_test(feet_lie_on_the_union),
       cmocka_unit_test(nested_parts_and_cavities),
       cmocka_unit_test(a_part_inside_out_is_turned),
