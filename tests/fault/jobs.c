@@ -220,7 +220,7 @@ static laves_result add_sources(laves_sizing *sizing, const job_place *place, la
     result = laves_sizing_add_background(sizing, input_path(place, files[i], path), NULL, error);
   if (result == LAVES_OK) result = laves_sizing_add_points(sizing, points, 1, 0.3, 0.1, error);
   if (result == LAVES_OK) result = laves_sizing_add_curve(sizing, points, 2, 0.3, 0.1, error);
-  return result == LAVES_OK ? laves_sizing_add_tag(sizing, "0", 0.35, 0, error) : result;
+  return result == LAVES_OK ? laves_sizing_add_tag(sizing, "x low", 0.35, 0, error) : result;
 }
 
 static laves_options graded_options(const laves_sizing *sizing) {
@@ -454,7 +454,7 @@ const job jobs[] = {
     {"read a surface with a hole", read_domain, "open.off"},
     {"read a surface that crosses itself", read_domain, "crossing.off"},
     {"read a script", read_domain, "leaf.lua"},
-    {"read an expression", make_expression, "tag('rod', cylinder{r=0.3, h=4}):twist(0.3) + gyroid(1) * sphere(1)"},
+    {"read an expression", make_expression, "tag('rod', cylinder{r=0.3, h=4}):rotate(30, 'x') + smooth_union(sphere(1), box(1), 0.2)"},
     {"read features", read_features, "lines"},
     {"read backgrounds", read_backgrounds, "size"},
     {"mesh by snapping", mesh_by_snap, "sphere(1) - sphere(0.5)"},
@@ -467,9 +467,9 @@ const job jobs[] = {
     {"mesh to a count", mesh_to_count, "box(1, 1.5, 2)"},
     {"mesh parts", mesh_parts, "parts.off"},
     {"mesh with drawn features", mesh_drawn, "box(1, 1, 1)"},
-    {"mesh graded", mesh_graded, "parts.off"},
+    {"mesh graded", mesh_graded, "cube.obj"},
     {"mesh tiling", make_tiling, ""},
-    {"estimate", estimate, "cube.off"},
+    {"estimate", estimate, "cube.obj"},
     {"check a mesh", check_mesh, ""},
     {"check features", check_features, ""},
     {"certify", certify, "certificate.json"},
