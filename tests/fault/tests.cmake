@@ -1,5 +1,14 @@
-# What fails: allocations and writes. Quick runs; LAVES_EVERY=1 makes test_allocations take every allocation.
+# What fails: allocations and writes. Quick runs; with LAVES_EVERY=1 in the environment every single one.
 add_executable(test_allocations fault/test_allocations.c fault/jobs.c fault/job_inputs.c fault/refuser.c)
 target_link_libraries(test_allocations PRIVATE laves-fixtures PkgConfig::JANSSON)
-add_test(NAME fault/test_allocations COMMAND test_allocations WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(fault/test_allocations PROPERTIES LABELS fault)
+
+add_executable(test_writes fault/test_writes.c fault/faulty_system.c)
+target_link_libraries(test_writes PRIVATE laves-fixtures)
+foreach(call open write close rename link)
+  target_link_options(test_writes PRIVATE -Wl,--wrap=${call})
+endforeach()
+
+foreach(name test_allocations test_writes)
+  add_test(NAME fault/${name} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  set_tests_properties(fault/${name} PROPERTIES LABELS fault)
+endforeach()
