@@ -1,17 +1,12 @@
 /* An allocator that refuses on demand, and counts what it gave.
  *
- * Each block has its size in front, so that a size which the library remembers wrongly is found. jansson has no user
- * pointer for its allocator, so there is one refuser at a time. */
+ * Each block has its size in front, so that a size which the library remembers wrongly is found. */
 #include "fault/refuser.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include <jansson.h>
-
 enum { FRONT_BYTES = 16 }; /* keeps the alignment */
-
-static refuser *current;
 
 static bool refuses(refuser *r) {
   ++r->asked;
@@ -41,23 +36,10 @@ static void *reallocate(void *user, void *pointer, size_t old_bytes, size_t new_
   return grown + FRONT_BYTES;
 }
 
-static void *json_allocate(size_t bytes) { return reallocate(current, NULL, 0, bytes ? bytes : 1); }
-
-static void json_release(void *pointer) {
-  if (pointer) reallocate(current, pointer, size_of_block((char *)pointer - FRONT_BYTES), 0);
-}
-
 laves_context *refuser_context(refuser *r) {
-  current = r;
-  json_set_alloc_funcs(json_allocate, json_release);
   laves_context_options options = laves_context_options_default();
   options.thread_count = 1;
   options.reallocate = reallocate;
   options.reallocate_user = r;
   return laves_context_create(&options);
-}
-
-void refuser_end(refuser *r) {
-  json_set_alloc_funcs(malloc, free);
-  if (current == r) current = NULL;
 }

@@ -15,10 +15,7 @@ typedef struct refuser {
   size_t mistakes; /* blocks given back with a size that they never had */
 } refuser;
 
-/* A context of one thread whose memory, and that of the JSON library, comes from the refuser. */
+/* A context of one thread whose memory comes from the refuser. */
 laves_context *refuser_context(refuser *r);
-
-/* Ends it: no block may be left. */
-void refuser_end(refuser *r);
 
 #endif

@@ -51,7 +51,6 @@ static run_facts run_job(const job *j, size_t refused, bool for_good) {
     facts.out.error = short_of_memory;
   }
   laves_context_free(context);
-  refuser_end(&r);
   facts.asked = r.asked;
   facts.blocks = r.blocks;
   facts.mistakes = r.mistakes;

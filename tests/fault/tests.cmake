@@ -1,6 +1,6 @@
 # What fails: allocations and writes. Quick runs; with LAVES_EVERY=1 in the environment every single one.
 add_executable(test_allocations fault/test_allocations.c fault/jobs.c fault/job_inputs.c fault/refuser.c)
-target_link_libraries(test_allocations PRIVATE laves-fixtures PkgConfig::JANSSON)
+target_link_libraries(test_allocations PRIVATE laves-fixtures)
 
 add_executable(test_writes fault/test_writes.c fault/faulty_system.c)
 target_link_libraries(test_writes PRIVATE laves-fixtures)
