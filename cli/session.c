@@ -63,7 +63,9 @@ static void write_json(FILE *file, const session *run, laves_result result, sess
 }
 
 static laves_result fail_json(session *run) {
-  return session_fail(run, LAVES_ERROR_WRITE, "cannot write the JSON file '%s': %s", run->given->json, strerror(errno));
+  if (errno == ENOMEM)
+    return session_fail(run, LAVES_ERROR_MEMORY, "no memory to write the JSON file '%.200s'", run->given->json);
+  return session_fail(run, LAVES_ERROR_WRITE, "cannot write the JSON file '%.200s': %s", run->given->json, strerror(errno));
 }
 
 static laves_result save_json(session *run, laves_result result, session_facts_fn *write_facts, const void *facts) {

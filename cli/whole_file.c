@@ -38,8 +38,8 @@ static int open_temporary(whole_file *out, mode_t mode) {
   const char *slash = strrchr(out->target, '/');
   const int folder = slash ? (int)(slash - out->target) + 1 : 0;
   for (int i = 0; i < NAMES_TRIED; ++i) {
-    const int length = snprintf(out->temporary, sizeof out->temporary, "%.*s.laves-%ld-%d.tmp", folder, out->target,
-                                (long)getpid(), i);
+    const int length =
+        snprintf(out->temporary, sizeof out->temporary, "%.*s.laves-%ld-%d.tmp", folder, out->target, (long)getpid(), i);
     if (length < 0 || (size_t)length >= sizeof out->temporary) {
       errno = ENAMETOOLONG;
       return -1;

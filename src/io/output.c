@@ -78,8 +78,8 @@ static void open_temporary(laves__output *out, mode_t mode) {
   const char *slash = strrchr(out->target, '/');
   const int folder = slash ? (int)(slash - out->target) + 1 : 0;
   for (int i = 0; i < TEMPORARY_TRIES; i++) {
-    const int length =
-        snprintf(out->temporary, sizeof out->temporary, "%.*s.laves-%ld-%d%s", folder, out->target, (long)getpid(), i, temporary_ending);
+    const int length = snprintf(out->temporary, sizeof out->temporary, "%.*s.laves-%ld-%d%s", folder, out->target, (long)getpid(),
+                                i, temporary_ending);
     if (length >= (int)sizeof out->temporary) break;
     out->file = open(out->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (out->file >= 0) {

@@ -201,7 +201,8 @@ static bool read_exception(const laves__json *object, laves_exception *e) {
   e->cause = (laves_cause)cause;
   for (size_t i = 0; i < 3; i++)
     if (!get_number(item_of(place, i, 3), &e->place[i])) return false;
-  return get_number(laves__json_member(object, "value"), &e->value) && get_number(laves__json_member(object, "limit"), &e->limit) &&
+  return get_number(laves__json_member(object, "value"), &e->value) &&
+         get_number(laves__json_member(object, "limit"), &e->limit) &&
          get_integer(laves__json_member(object, "index"), -1, &e->index) &&
          get_number(laves__json_member(object, "curvature_radius"), &e->curvature_radius) &&
          get_later_number(laves__json_member(object, "crease_angle"), &e->crease_angle);

@@ -241,8 +241,7 @@ static void write_compressed(laves__output *out, const array *a) {
 }
 
 static void free_compressed(laves_context *context, array *a) {
-  for (size_t i = 0; i < a->block_count && a->blocks && a->header; i++)
-    laves__free(context, a->blocks[i], a->header[3 + i], 1);
+  for (size_t i = 0; i < a->block_count && a->blocks && a->header; i++) laves__free(context, a->blocks[i], a->header[3 + i], 1);
   laves__free(context, a->blocks, a->block_count, sizeof *a->blocks);
   laves__free(context, a->header, 3 + a->block_count, sizeof *a->header);
 }

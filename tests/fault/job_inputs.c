@@ -38,9 +38,7 @@ static bool put_shape(const job_place *place, const char *name, shape s) {
   return fclose(file) == 0;
 }
 
-static shape cube(double half) {
-  return shape_box((const double[]){-half, -half, -half}, (const double[]){half, half, half}, 1);
-}
+static shape cube(double half) { return shape_box((const double[]){-half, -half, -half}, (const double[]){half, half, half}, 1); }
 
 static shape joined(shape a, shape b) {
   shape_append(&a, &b);
@@ -105,10 +103,9 @@ static bool write_as(laves_context *context, const laves_mesh *mesh, const job_p
 
 /* A mesh with regions, tags and names in every format, surfaces too. */
 static bool put_tagged(laves_context *context, const job_place *place) {
-  static const char *const names[] = {
-      "tagged.vtu", "tagged_text.vtu", "tagged22.msh", "tagged.msh",    "tagged_text.msh", "tagged.mesh", "tagged.meshb",
-      "tagged.node", "cube.stl",       "cube_text.stl", "cube.obj",     "cube.ply",        "cube_text.ply", "cube22.msh",
-      "cube.msh"};
+  static const char *const names[] = {"tagged.vtu",  "tagged_text.vtu", "tagged22.msh",  "tagged.msh", "tagged_text.msh",
+                                      "tagged.mesh", "tagged.meshb",    "tagged.node",   "cube.stl",   "cube_text.stl",
+                                      "cube.obj",    "cube.ply",        "cube_text.ply", "cube22.msh", "cube.msh"};
   laves_mesh *mesh = fixture_tagged_cube(context, 2);
   bool right = true;
   for (size_t i = 0; i < sizeof names / sizeof *names && right; i++) right = write_as(context, mesh, place, names[i]);
@@ -127,8 +124,7 @@ static bool put_subject(laves_context *context, const job_place *place) {
   snprintf(path, sizeof path, "%s/cube.off", place->inputs);
   bool right = laves_domain_from_file(context, path, &domain, NULL) == LAVES_OK &&
                laves_generate(context, domain, &options, &mesh, NULL, NULL) == LAVES_OK &&
-               write_as(context, mesh, place, "cube.vtu") &&
-               laves_certify(context, mesh, NULL, &certificate, NULL) == LAVES_OK;
+               write_as(context, mesh, place, "cube.vtu") && laves_certify(context, mesh, NULL, &certificate, NULL) == LAVES_OK;
   snprintf(path, sizeof path, "%s/cube.json", place->inputs);
   right = right && laves_certificate_write(context, &certificate, path, NULL) == LAVES_OK;
   laves_mesh_free(mesh);
@@ -138,9 +134,8 @@ static bool put_subject(laves_context *context, const job_place *place) {
 
 bool job_place_make(job_place *place) {
   laves_context *context = laves_context_create(NULL);
-  const bool right = context && fixture_folder_make(place->inputs) && fixture_folder_make(place->outputs) &&
-                     put_solids(place) && put_drawings(place) && put_sizes(place) && put_tagged(context, place) &&
-                     put_subject(context, place);
+  const bool right = context && fixture_folder_make(place->inputs) && fixture_folder_make(place->outputs) && put_solids(place) &&
+                     put_drawings(place) && put_sizes(place) && put_tagged(context, place) && put_subject(context, place);
   laves_context_free(context);
   return right;
 }

@@ -121,8 +121,7 @@ static laves_result read_backgrounds(laves_context *context, const job_place *pl
 
 /* ---- meshes ---- */
 
-static laves_result generate(laves_context *context, const laves_domain *domain, const laves_options *options,
-                             job_outcome *out) {
+static laves_result generate(laves_context *context, const laves_domain *domain, const laves_options *options, job_outcome *out) {
   laves_mesh *mesh = NULL;
   laves_report report;
   const laves_result result = laves_generate(context, domain, options, &mesh, &report, &out->error);
@@ -454,7 +453,8 @@ const job jobs[] = {
     {"read a surface with a hole", read_domain, "open.off"},
     {"read a surface that crosses itself", read_domain, "crossing.off"},
     {"read a script", read_domain, "leaf.lua"},
-    {"read an expression", make_expression, "tag('rod', cylinder{r=0.3, h=4}):rotate(30, 'x') + smooth_union(sphere(1), box(1), 0.2)"},
+    {"read an expression", make_expression,
+     "tag('rod', cylinder{r=0.3, h=4}):rotate(30, 'x') + smooth_union(sphere(1), box(1), 0.2)"},
     {"read features", read_features, "lines"},
     {"read backgrounds", read_backgrounds, "size"},
     {"mesh by snapping", mesh_by_snap, "sphere(1) - sphere(0.5)"},

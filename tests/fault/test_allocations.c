@@ -17,7 +17,7 @@
 #include "fault/refuser.h"
 
 /* Refusals of each kind in the quick run of a job. */
-enum { QUICK_RUNS = 40 };
+enum { QUICK_RUNS = 15 };
 
 static job_place place;
 
