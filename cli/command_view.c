@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "output.h"
 #include "picture.h"
 #include "png.h"
 #include "session.h"
@@ -105,8 +106,12 @@ static laves_result write_picture(session *run, const scene *shown, const pictur
   }
   for (size_t i = 0; !clear && i < count; ++i) memmove(pixels + 3 * i, pixels + CHANNELS * i, 3);
   const bool written = png_write(path, pixels, how->width, how->height, clear ? CHANNELS : 3);
+  const int reason = errno;
   free(pixels);
-  return written ? LAVES_OK : session_fail(run, LAVES_ERROR_WRITE, "cannot write '%s': %s", path, strerror(errno));
+  errno = reason;
+  if (written) return LAVES_OK;
+  if (errno == ENOMEM) return session_fail(run, LAVES_ERROR_MEMORY, "no memory to write the picture '%.200s'", path);
+  return session_fail(run, LAVES_ERROR_WRITE, "cannot write '%.200s': %s", path, strerror(errno));
 }
 
 static laves_result draw(session *run, const laves_mesh *mesh, const scene_options *what, const picture_options *how) {
@@ -140,7 +145,8 @@ static laves_result view_steps(session *run, laves_mesh **mesh) {
   if (run->given->outputs.count != 1) {
     return session_fail(run, LAVES_ERROR_OPTION, "'laves view' needs one picture to write: --output FILE.png");
   }
-  laves_result result = read_words(run, &what, &how);
+  laves_result result = outputs_check_text(run, run->given->outputs.items[0], run->given->input);
+  if (result == LAVES_OK) result = read_words(run, &what, &how);
   if (result == LAVES_OK) result = read_numbers(run, &how);
   if (result == LAVES_OK) result = laves_mesh_read(run->context, run->given->input, mesh, &run->error);
   result = session_settle(run, result);

@@ -3,10 +3,14 @@
  *   main -> options (one table, command_table.c) -> command_*.c -> session (context, errors, JSON) -> laves.h
  *
  * Human text goes to stderr, data to stdout. Exit codes: docs/errors.md. */
+#include <errno.h>
+#include <fcntl.h>
 #include <locale.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "interrupt.h"
 #include "laves/laves.h"
@@ -14,6 +18,27 @@
 #include "text.h"
 
 enum { EXIT_USAGE = 1 };
+
+/* The descriptors of the three streams are taken, even where the caller closed them: else the first output file would get one
+ * of their numbers, and messages would go into it. /dev/null is opened so that writing fails, as it does on a closed one. */
+static void hold_streams(void) {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+    if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) return;
+  }
+}
+
+/* A pipe that nobody reads any more and a file that may not grow are failed writes, with a sentence and an exit code. */
+static void ignore_write_signals(void) {
+  signal(SIGPIPE, SIG_IGN);
+  signal(SIGXFSZ, SIG_IGN);
+}
+
+/* The exit code of what was printed on the standard output. */
+static int finish_output(void) {
+  if (text_flush_output()) return 0;
+  text_error("cannot write to the standard output: %s", strerror(errno));
+  return laves_result_exit_code(LAVES_ERROR_WRITE);
+}
 
 static int unknown_command(const char *word) {
   const char *known[16] = {"help"};
@@ -44,10 +69,12 @@ static int show_help(const char *topic) {
   } else {
     return unknown_command(topic);
   }
-  return 0;
+  return finish_output();
 }
 
 int main(int count, char **words) {
+  hold_streams();
+  ignore_write_signals();
   setlocale(LC_CTYPE, ""); /* only to learn whether the terminal writes UTF-8; numbers keep their point */
   if (count < 2) {
     options_print_overview(stderr);
@@ -56,7 +83,7 @@ int main(int count, char **words) {
   const char *name = words[1];
   if (strcmp(name, "--version") == 0 || strcmp(name, "version") == 0) {
     printf("laves %s\n", laves_version());
-    return 0;
+    return finish_output();
   }
   if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) return show_help(NULL);
   if (strcmp(name, "help") == 0) return show_help(count > 2 ? words[2] : NULL);
@@ -69,7 +96,7 @@ int main(int count, char **words) {
       return EXIT_USAGE;
     case OPTIONS_HELP:
       options_print_help(stdout, about);
-      return 0;
+      return finish_output();
     case OPTIONS_RUN:
       break;
   }

@@ -25,17 +25,53 @@ static laves_result check_folder(session *run, const char *path) {
   return LAVES_OK;
 }
 
+static bool is_same_file(const char *path, const struct stat *target) {
+  struct stat status;
+  return path && stat(path, &status) == 0 && status.st_dev == target->st_dev && status.st_ino == target->st_ino;
+}
+
+static bool is_among(const option_texts *list, const struct stat *target) {
+  for (int i = 0; i < list->count; ++i) {
+    if (is_same_file(list->items[i], target)) return true;
+  }
+  return false;
+}
+
+/* Whether an output, under whatever name, is a file that the command reads. */
+static bool is_input(const session *run, const char *source, const struct stat *target) {
+  const settings *given = run->given;
+  return is_same_file(source, target) || is_same_file(given->surface, target) || is_among(&given->size_fields, target) ||
+         is_among(&given->features, target);
+}
+
+static bool stat_folder(const char *path, struct stat *status) {
+  char folder[PATH_CAPACITY] = ".";
+  const int length = (int)(text_base_name(path) - path);
+  if (length >= PATH_CAPACITY) return false;
+  if (length > 0) snprintf(folder, sizeof folder, "%.*s", length, path);
+  return stat(folder, status) == 0;
+}
+
+/* Whether two outputs would be one file: one that is there, or the same name in the same folder. */
+static bool is_same_place(const char *a, const char *b) {
+  struct stat first, second;
+  if (strcmp(a, b) == 0) return true;
+  if (stat(a, &first) == 0) return S_ISREG(first.st_mode) && is_same_file(b, &first);
+  if (stat(b, &second) == 0 || strcmp(text_base_name(a), text_base_name(b)) != 0) return false;
+  return stat_folder(a, &first) && stat_folder(b, &second) && first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+}
+
 /* Meshes are renamed into place, which must not replace a device; JSON may go to one. */
 static laves_result check_target(session *run, const char *path, const char *source, bool may_be_device) {
   if (strlen(path) + 16 > PATH_CAPACITY) return session_fail(run, LAVES_ERROR_WRITE, "the name of an output file is too long");
-  struct stat target, input;
+  struct stat target;
   if (stat(path, &target) != 0) return check_folder(run, path);
   if (S_ISDIR(target.st_mode)) return session_fail(run, LAVES_ERROR_WRITE, "cannot write '%.200s': it is a folder", path);
   if (!S_ISREG(target.st_mode)) {
     if (may_be_device) return LAVES_OK;
     return session_fail(run, LAVES_ERROR_WRITE, "cannot write '%.200s': it is not an ordinary file", path);
   }
-  if (source && stat(source, &input) == 0 && input.st_dev == target.st_dev && input.st_ino == target.st_ino) {
+  if (is_input(run, source, &target)) {
     return session_fail(run, LAVES_ERROR_OPTION, "'%.200s' is the input and would be overwritten; name another file", path);
   }
   return check_folder(run, path);
@@ -56,7 +92,11 @@ static laves_result add(session *run, const char *path, bool surface_only, outpu
     return session_fail(run, LAVES_ERROR_OPTION, "'--boundary' writes a surface: .stl, .obj, .ply or .off, not '%.200s'", path);
   }
   for (int i = 0; i < plan->count; ++i) {
-    if (strcmp(plan->items[i].path, path) == 0) return session_fail(run, LAVES_ERROR_OPTION, "'%.200s' is named twice", path);
+    if (is_same_place(plan->items[i].path, path)) return session_fail(run, LAVES_ERROR_OPTION, "'%.200s' is named twice", path);
+  }
+  if (run->given->json && is_same_place(run->given->json, path)) {
+    run->json_refused = true; /* it must not take the place of what is there */
+    return session_fail(run, LAVES_ERROR_OPTION, "'%.200s' is named twice", path);
   }
   plan->items[plan->count++] = (output){.path = path, .format = format};
   return LAVES_OK;
@@ -83,11 +123,11 @@ laves_result outputs_plan_certificate(session *run, const char *source, outputs 
     return session_fail(run, LAVES_ERROR_WRITE, "the name of the certificate is too long");
   }
   for (int i = 0; i < plan->count; ++i) {
-    if (strcmp(plan->items[i].path, plan->certificate) == 0) {
+    if (is_same_place(plan->items[i].path, plan->certificate)) {
       return session_fail(run, LAVES_ERROR_OPTION, "'%.200s' is named twice", plan->certificate);
     }
   }
-  if (run->given->json && strcmp(run->given->json, plan->certificate) == 0) {
+  if (run->given->json && is_same_place(run->given->json, plan->certificate)) {
     return session_fail(run, LAVES_ERROR_OPTION, "'%.200s' is named twice", plan->certificate);
   }
   return check_target(run, plan->certificate, source, true);

@@ -10,8 +10,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 #include <zlib.h>
+
+#include "whole_file.h"
 
 enum { filter_count = 5, colour_rgb = 2, colour_rgba = 6 };
 
@@ -100,42 +101,22 @@ static bool write_chunks(FILE *file, const uint8_t *packed, size_t packed_size, 
          write_chunk(file, "IEND", &perceptual, 0);
 }
 
-/* Writes to `temporary`, which it removes on failure, and renames it to `path`. */
-static bool write_file(const char *path, const char *temporary, const uint8_t *packed, size_t packed_size, int width, int height,
-                       int channels) {
-  FILE *file = fopen(temporary, "wb");
-  if (!file) {
-    return false;
-  }
-  bool done = write_chunks(file, packed, packed_size, width, height, channels);
-  done = fclose(file) == 0 && done;
-  done = done && rename(temporary, path) == 0;
-  if (!done) {
-    int reason = errno;
-    unlink(temporary);
-    errno = reason;
-  }
-  return done;
-}
-
 bool png_write(const char *path, const uint8_t *pixels, int width, int height, int channels) {
-  bool done = false;
+  whole_file out;
   size_t row_size = (size_t)width * (size_t)channels;
   size_t raw_size = (row_size + 1) * (size_t)height;
-  size_t name_size = strlen(path) + sizeof ".part";
   uLongf packed_size = compressBound((uLong)raw_size);
   uint8_t *raw = filter_rows(pixels, row_size, height, channels);
   uint8_t *packed = malloc(packed_size);
-  char *temporary = malloc(name_size);
-  if (!raw || !packed || !temporary || compress2(packed, &packed_size, raw, (uLong)raw_size, 9) != Z_OK) {
+  bool done = raw && packed && compress2(packed, &packed_size, raw, (uLong)raw_size, 9) == Z_OK;
+  if (!done) {
     errno = ENOMEM;
-    goto done;
   }
-  snprintf(temporary, name_size, "%s.part", path);
-  done = write_file(path, temporary, packed, packed_size, width, height, channels);
-done:
+  done = done && whole_file_open(&out, path) &&
+         whole_file_close(&out, write_chunks(out.file, packed, packed_size, width, height, channels));
+  int reason = errno;
   free(raw);
   free(packed);
-  free(temporary);
+  errno = reason;
   return done;
 }

@@ -6,11 +6,10 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "interrupt.h"
 #include "text.h"
+#include "whole_file.h"
 
 bool session_open(session *run, const settings *given) {
   *run = (session){.given = given, .start = progress_now(), .bar = progress_start(!given->quiet)};
@@ -64,35 +63,22 @@ static void write_json(FILE *file, const session *run, laves_result result, sess
 }
 
 static laves_result fail_json(session *run) {
-  return session_fail(run, LAVES_ERROR_WRITE, "cannot write the JSON file '%s': %s", run->given->json, strerror(errno));
+  if (errno == ENOMEM)
+    return session_fail(run, LAVES_ERROR_MEMORY, "no memory to write the JSON file '%.200s'", run->given->json);
+  return session_fail(run, LAVES_ERROR_WRITE, "cannot write the JSON file '%.200s': %s", run->given->json, strerror(errno));
 }
 
-/* A device or a pipe is written to directly; a file is written beside its place and renamed, so that it appears whole. */
 static laves_result save_json(session *run, laves_result result, session_facts_fn *write_facts, const void *facts) {
   const char *path = run->given->json;
   if (strcmp(path, "-") == 0) {
     write_json(stdout, run, result, write_facts, facts);
-    if (fflush(stdout) == 0) return LAVES_OK;
+    if (text_flush_output()) return LAVES_OK;
     return session_fail(run, LAVES_ERROR_WRITE, "cannot write JSON to the standard output: %s", strerror(errno));
   }
-  struct stat status;
-  const bool special = stat(path, &status) == 0 && !S_ISREG(status.st_mode);
-  char temporary[4096];
-  const int length = snprintf(temporary, sizeof temporary, special ? "%s" : "%s.tmp%ld", path, (long)getpid());
-  if (length < 0 || (size_t)length >= sizeof temporary) {
-    errno = ENAMETOOLONG;
-    return fail_json(run);
-  }
-  FILE *file = fopen(temporary, "w");
-  if (!file) return fail_json(run);
-  write_json(file, run, result, write_facts, facts);
-  bool right = !ferror(file);
-  right = fclose(file) == 0 && right;
-  if (!special) right = right && rename(temporary, path) == 0;
-  if (right) return LAVES_OK;
-  const laves_result failed = fail_json(run);
-  if (!special) unlink(temporary);
-  return failed;
+  whole_file out;
+  if (!whole_file_open(&out, path)) return fail_json(run);
+  write_json(out.file, run, result, write_facts, facts);
+  return whole_file_close(&out, true) ? LAVES_OK : fail_json(run);
 }
 
 void session_write_json(session *run, laves_result *result, session_facts_fn *write_facts, const void *facts) {

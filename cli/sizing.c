@@ -144,6 +144,9 @@ static laves_result add_curves(session *run, laves_sizing *sizing, const refinem
   laves_result result = LAVES_OK;
   size_t number = 0, points = 0;
   FILE *file = is_file(r->place) ? fopen(r->place, "r") : NULL;
+  if (!file && errno == ENOMEM) {
+    return session_fail(run, LAVES_ERROR_MEMORY, "no memory to read the curve '%.200s'", r->place);
+  }
   if (!file) {
     return session_fail(run, LAVES_ERROR_INPUT, "the curve '%.200s' cannot be read: %s", r->place,
                         is_file(r->place) ? strerror(errno) : "there is no such file");
@@ -152,6 +155,9 @@ static laves_result add_curves(session *run, laves_sizing *sizing, const refinem
     const size_t before = line.count;
     result = take_line(run, sizing, &line, r, text, ++number);
     points += line.count > before;
+  }
+  if (result == LAVES_OK && ferror(file)) {
+    result = session_fail(run, LAVES_ERROR_INPUT, "the curve '%.200s' cannot be read: %s", r->place, strerror(errno));
   }
   if (result == LAVES_OK) result = end_polyline(run, sizing, &line, r);
   if (result == LAVES_OK && points == 0)

@@ -1,6 +1,7 @@
 /* Words for people: messages, numbers with units, and what the terminal can show. */
 #include "text.h"
 
+#include <errno.h>
 #include <langinfo.h>
 #include <math.h>
 #include <stdarg.h>
@@ -104,6 +105,11 @@ void text_warning(const char *format, ...) {
   va_start(arguments, format);
   say_with_label("warning", "1;33", format, arguments);
   va_end(arguments);
+}
+
+bool text_flush_output(void) {
+  errno = EIO; /* of an earlier loss nothing else is known */
+  return fflush(stdout) == 0 && !ferror(stdout);
 }
 
 enum { WORD_CAPACITY = 32 };

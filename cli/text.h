@@ -36,6 +36,9 @@ void text_say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void text_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void text_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* Sends to the standard output what waits for it. False, and errno tells why, when anything written to it was lost. */
+bool text_flush_output(void);
+
 /* The known word that is nearest to a misspelt one, or NULL when none is near. */
 const char *text_nearest(const char *word, const char *const *known, size_t count);
 

@@ -137,7 +137,7 @@ static bool merge(laves__layer *layer, int32_t a, int32_t b, const ring *r, lave
   laves__star *star = &layer->star[b];
   for (int i = 0; i < star->count; i++) {
     const int32_t t = star->tet[i];
-    if (!laves__journal_tet(j, layer, t) || !laves__star_add(layer->context, &layer->star[a], t)) return false;
+    if (!laves__journal_tet(j, layer, t) || !laves__journal_star_add(j, layer, a, t)) return false;
     layer->tet[t][laves__layer_corner(layer, t, b)] = a;
   }
   star->count = 0;

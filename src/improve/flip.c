@@ -254,10 +254,10 @@ static void leave_stars(laves__layer *layer, int32_t tet) {
   layer->tet[tet][0] = -1;
 }
 
-static bool join_stars(laves__layer *layer, int32_t tet) {
+static bool join_stars(laves__layer *layer, int32_t tet, laves__journal *j) {
   for (int k = 0; k < 4; k++) {
     const int32_t v = layer->tet[tet][k];
-    if (laves__layer_moves(layer, v) && !laves__star_add(layer->context, &layer->star[v], tet)) return false;
+    if (laves__layer_moves(layer, v) && !laves__journal_star_add(j, layer, v, tet)) return false;
   }
   return true;
 }
@@ -277,7 +277,7 @@ static bool make(laves__layer *layer, const change *c, laves__slots *slots, lave
   for (int i = 0; i < c->fresh_count && joined; i++) {
     for (int k = 0; k < 4; k++) layer->tet[place[i]][k] = c->fresh[i][k];
     layer->quality[place[i]] = c->quality[i];
-    joined = join_stars(layer, place[i]);
+    joined = join_stars(layer, place[i], j);
   }
   if (joined)
     slots->count -= taken;

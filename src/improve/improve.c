@@ -429,6 +429,13 @@ static laves_result mend_all(work *w, const laves__window *window, laves_error *
   return w->layer->scale ? mend_graded(w, error) : mend_tiling(w, window->brief, error);
 }
 
+/* An operation without room for its journal was left out, and the mesh would be another one than with more memory. */
+static bool short_of_memory(const work *w, int workers) {
+  for (int i = 0; i < workers; i++)
+    if (w->journal[i].short_of_memory) return true;
+  return false;
+}
+
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {
   laves_context *context = layer->context;
   work w = {.frame = frame, .measure = laves__measure_of(window), .target = 1, .admit = 1, .layer = layer};
@@ -456,6 +463,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   if (result == LAVES_OK && !window->again) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
   if (result == LAVES_OK) result = mend_all(&w, window, error);
   if (result == LAVES_OK) settle_all(&w, settle_floor);
+  if (result == LAVES_OK && short_of_memory(&w, workers)) result = laves__fail_memory(context, error);
 cleanup:
   for (int i = 0; w.journal && i < workers; i++) laves__journal_free(&w.journal[i]);
   laves__free(context, w.spare_vertex, extra, sizeof *w.spare_vertex);

@@ -14,9 +14,16 @@ void laves__journal_free(laves__journal *j) {
 
 void laves__journal_clear(laves__journal *j) { j->vertex_count = j->tet_count = j->star_count = j->pool_count = 0; }
 
+/* Once memory was short nothing is begun any more: what could be made of the rest would depend on when that was. */
+static bool grow(laves__journal *j, void *block, size_t *capacity, size_t needed, size_t size) {
+  if (!j->short_of_memory && laves__grow(j->context, block, capacity, needed, size)) return true;
+  j->short_of_memory = true;
+  return false;
+}
+
 bool laves__journal_vertex(laves__journal *j, const laves__layer *layer, int32_t v) {
   if (!j) return true;
-  if (!laves__grow(j->context, &j->vertex, &j->vertex_capacity, j->vertex_count + 1, sizeof *j->vertex)) return false;
+  if (!grow(j, &j->vertex, &j->vertex_capacity, j->vertex_count + 1, sizeof *j->vertex)) return false;
   j->vertex[j->vertex_count++] =
       (laves__vertex_entry){v, layer->hint[v], layer->position[v], layer->normal[v], layer->off_surface[v]};
   return true;
@@ -24,7 +31,7 @@ bool laves__journal_vertex(laves__journal *j, const laves__layer *layer, int32_t
 
 bool laves__journal_tet(laves__journal *j, const laves__layer *layer, int32_t t) {
   if (!j) return true;
-  if (!laves__grow(j->context, &j->tet, &j->tet_capacity, j->tet_count + 1, sizeof *j->tet)) return false;
+  if (!grow(j, &j->tet, &j->tet_capacity, j->tet_count + 1, sizeof *j->tet)) return false;
   laves__tet_entry *entry = &j->tet[j->tet_count++];
   entry->tet = t;
   entry->quality = layer->quality[t];
@@ -35,13 +42,19 @@ bool laves__journal_tet(laves__journal *j, const laves__layer *layer, int32_t t)
 bool laves__journal_star(laves__journal *j, const laves__layer *layer, int32_t v) {
   if (!j) return true;
   const laves__star *star = &layer->star[v];
-  if (!laves__grow(j->context, &j->star, &j->star_capacity, j->star_count + 1, sizeof *j->star) ||
-      !laves__grow(j->context, &j->pool, &j->pool_capacity, j->pool_count + (size_t)star->count, sizeof *j->pool))
+  if (!grow(j, &j->star, &j->star_capacity, j->star_count + 1, sizeof *j->star) ||
+      !grow(j, &j->pool, &j->pool_capacity, j->pool_count + (size_t)star->count, sizeof *j->pool))
     return false;
   j->star[j->star_count++] = (laves__star_entry){v, star->count, j->pool_count};
   if (star->count) memcpy(j->pool + j->pool_count, star->tet, (size_t)star->count * sizeof *star->tet);
   j->pool_count += (size_t)star->count;
   return true;
+}
+
+bool laves__journal_star_add(laves__journal *j, laves__layer *layer, int32_t v, int32_t t) {
+  if (laves__star_add(layer->context, &layer->star[v], t)) return true;
+  j->short_of_memory = true;
+  return false;
 }
 
 void laves__journal_undo(laves__journal *j, laves__layer *layer) {

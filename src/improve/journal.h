@@ -30,6 +30,7 @@ typedef struct laves__journal {
   laves__star_entry *star;
   int32_t *pool;
   size_t vertex_count, vertex_capacity, tet_count, tet_capacity, star_count, star_capacity, pool_count, pool_capacity;
+  bool short_of_memory; /* an operation was left out for that reason: the improvement has failed */
 } laves__journal;
 
 void laves__journal_free(laves__journal *journal);
@@ -38,6 +39,8 @@ void laves__journal_clear(laves__journal *journal);
 bool laves__journal_vertex(laves__journal *journal, const laves__layer *layer, int32_t vertex);
 bool laves__journal_tet(laves__journal *journal, const laves__layer *layer, int32_t tet);
 bool laves__journal_star(laves__journal *journal, const laves__layer *layer, int32_t vertex);
+/* Adds a tet to a star that the journal has; false when memory is short. */
+bool laves__journal_star_add(laves__journal *journal, laves__layer *layer, int32_t vertex, int32_t tet);
 /* Puts everything back. */
 void laves__journal_undo(laves__journal *journal, laves__layer *layer);
 

@@ -89,7 +89,7 @@ static bool split(laves__layer *layer, int32_t b, const around *r, int32_t m, la
     bool done = true;
     for (int k = 0; k < 4 && done; k++) {
       const int32_t v = layer->tet[fresh][k];
-      if (laves__layer_moves(layer, v)) done = laves__star_add(layer->context, &layer->star[v], fresh);
+      if (laves__layer_moves(layer, v)) done = laves__journal_star_add(j, layer, v, fresh);
     }
     if (!done) return false;
   }
@@ -97,12 +97,12 @@ static bool split(laves__layer *layer, int32_t b, const around *r, int32_t m, la
 }
 
 /* The old tets become the halves at b: a goes from them. */
-static bool finish(laves__layer *layer, int32_t a, const around *r, int32_t m) {
+static bool finish(laves__layer *layer, int32_t a, const around *r, int32_t m, laves__journal *j) {
   for (int i = 0; i < r->count; i++) {
     const int32_t t = r->tet[i];
     layer->tet[t][laves__layer_corner(layer, t, a)] = m;
     if (laves__layer_moves(layer, a)) laves__star_remove(&layer->star[a], t);
-    if (!laves__star_add(layer->context, &layer->star[m], t)) return false;
+    if (!laves__journal_star_add(j, layer, m, t)) return false;
   }
   return true;
 }
@@ -156,7 +156,7 @@ static bool split_edge(const laves__frame *frame, const laves__measure *measure,
   double before = HUGE_VAL;
   for (int i = 0; i < r.count; i++) before = fmin(before, layer->quality[r.tet[i]]);
   laves__journal_clear(j);
-  bool good = split(layer, b, &r, m, slots, j) && finish(layer, a, &r, m) && measure_around(measure, layer, m) > LAVES__FLAT;
+  bool good = split(layer, b, &r, m, slots, j) && finish(layer, a, &r, m, j) && measure_around(measure, layer, m) > LAVES__FLAT;
   for (int round = 0; good && round < ROUNDS; round++) smooth_around(frame, measure, target, layer, m, j);
   good = good && worst_touched(layer, j) > before && laves__feature_faults(frame, layer, m) == 0;
   if (good && r.on_boundary) {

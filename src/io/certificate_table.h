@@ -56,8 +56,8 @@ extern const laves__member laves__certificate_members[];
 extern const size_t laves__certificate_member_count;
 
 /* Reads a certificate from bytes; `name` for messages. */
-laves_result laves__certificate_parse(const char *bytes, size_t length, const char *name, laves_certificate *certificate,
-                                      laves_error *error);
+laves_result laves__certificate_parse(laves_context *context, const char *bytes, size_t length, const char *name,
+                                      laves_certificate *certificate, laves_error *error);
 
 /* Names of the enums' values, NULL behind the last. */
 extern const char *const laves__align_names[];

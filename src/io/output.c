@@ -27,6 +27,7 @@ enum {
 };
 
 static const char phase[] = "write";
+static const char temporary_ending[] = ".part", kept_ending[] = ".kept"; /* equally long */
 
 void laves__output_fail(laves__output *out, laves_result result, const char *format, ...) {
   if (out->error.result != LAVES_OK) return;
@@ -77,8 +78,8 @@ static void open_temporary(laves__output *out, mode_t mode) {
   const char *slash = strrchr(out->target, '/');
   const int folder = slash ? (int)(slash - out->target) + 1 : 0;
   for (int i = 0; i < TEMPORARY_TRIES; i++) {
-    const int length =
-        snprintf(out->temporary, sizeof out->temporary, "%.*s.laves-%ld-%d.part", folder, out->target, (long)getpid(), i);
+    const int length = snprintf(out->temporary, sizeof out->temporary, "%.*s.laves-%ld-%d%s", folder, out->target, (long)getpid(),
+                                i, temporary_ending);
     if (length >= (int)sizeof out->temporary) break;
     out->file = open(out->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (out->file >= 0) {
@@ -120,7 +121,8 @@ static void write_through(laves__output *out, const char *bytes, size_t count) {
     }
     const ssize_t done = write(out->file, bytes, count < PIECE_BYTES ? count : PIECE_BYTES);
     if (done < 0 && errno == EINTR) continue;
-    if (done < 0) {
+    if (done <= 0) {
+      if (done == 0) errno = ENOSPC; /* a device that takes nothing more */
       fail_system(out, "write", out->target);
       return;
     }
@@ -214,6 +216,41 @@ laves_result laves__output_publish(laves__output *out) {
   else
     out->temporary[0] = 0;
   return out->error.result;
+}
+
+/* ---- several files that are one ---- */
+
+/* Gives the file at the target a second name, to be brought back from. */
+static void keep_old(laves__output *out) {
+  if (out->direct) return;
+  const size_t length = strlen(out->temporary) - strlen(temporary_ending);
+  memcpy(out->kept, out->temporary, length);
+  strcpy(out->kept + length, kept_ending);
+  const bool kept = link(out->target, out->kept) == 0;
+  out->can_undo = kept || errno == ENOENT;
+  if (!kept) out->kept[0] = 0;
+}
+
+static void bring_back(laves__output *out) {
+  if (!out->can_undo) return;
+  if (out->kept[0])
+    rename(out->kept, out->target);
+  else
+    unlink(out->target);
+}
+
+laves_result laves__output_publish_all(laves__output *outs, int count) {
+  laves_result result = LAVES_OK;
+  int published = 0;
+  for (int i = 0; i < count; i++) keep_old(&outs[i]);
+  while (published < count && result == LAVES_OK) {
+    result = laves__output_publish(&outs[published]);
+    if (result == LAVES_OK) published++;
+  }
+  for (int i = 0; i < published && result != LAVES_OK; i++) bring_back(&outs[i]);
+  for (int i = 0; i < count; i++)
+    if (outs[i].kept[0]) unlink(outs[i].kept); /* gone already where it was brought back */
+  return result;
 }
 
 void laves__output_discard(laves__output *out) {

@@ -24,6 +24,8 @@ typedef struct laves__output {
   double prepared;  /* the fraction of the work done before the first byte; set by the writer */
   char target[PATH_MAX];
   char temporary[PATH_MAX]; /* empty: none on disk */
+  char kept[PATH_MAX];      /* of several files that are published together: the older file's second name; empty: none */
+  bool can_undo;            /* their publishing */
 } laves__output;
 
 /* Zeroes and opens; on failure the result is in out->error too and the other calls stay harmless. */
@@ -44,6 +46,8 @@ void laves__output_fail_memory(laves__output *out);
 laves_result laves__output_complete(laves__output *out);
 /* Renames it to the target. */
 laves_result laves__output_publish(laves__output *out);
+/* The same for files that are of use together only: when one cannot be renamed, the others' targets are as they were before. */
+laves_result laves__output_publish_all(laves__output *outs, int count);
 /* Frees everything and removes what is left of an unpublished file; after publishing only frees. */
 void laves__output_discard(laves__output *out);
 

@@ -1,9 +1,6 @@
-/* Reads a certificate: JSON by jansson, then member by member by the table, each checked for its type and range.
+/* Reads a certificate: JSON, then member by member by the table, each checked for its type and range.
  *
- * Files come from anywhere: their size is limited before parsing, and jansson limits depth itself (2048) and refuses repeated
- * keys. Its memory comes from the C library, as it can only be told otherwise for the whole process; it is some fifty times the
- * file at most, so the limit on the file bounds it. */
-#include <jansson.h>
+ * Files come from anywhere: their size is limited before they are read, depth and width by json_tree.h. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,6 +8,7 @@
 
 #include "io/certificate_table.h"
 #include "io/file.h"
+#include "io/json_tree.h"
 
 enum { FILE_BYTES_MAX = 1 << 20 };
 /* JSON numbers beyond this are not exact in every reader. */
@@ -28,56 +26,66 @@ static laves_result fail_member(const reader *r, const char *group, const char *
 
 /* ---- values ---- */
 
-static bool get_text(const json_t *value, char *to, size_t capacity) {
+static bool is_null(const laves__json *value) { return laves__json_is(value, LAVES__JSON_NULL); }
+
+static bool is_text(const laves__json *value) { return laves__json_is(value, LAVES__JSON_TEXT); }
+
+static bool is_number(const laves__json *value) {
+  return laves__json_is(value, LAVES__JSON_INTEGER) || laves__json_is(value, LAVES__JSON_REAL);
+}
+
+static bool is_true(const laves__json *value) { return laves__json_is(value, LAVES__JSON_TRUE); }
+
+static bool is_flag(const laves__json *value) { return is_true(value) || laves__json_is(value, LAVES__JSON_FALSE); }
+
+static bool get_text(const laves__json *value, char *to, size_t capacity) {
   to[0] = 0;
-  if (json_is_null(value)) return true;
-  if (!json_is_string(value) || json_string_length(value) >= capacity ||
-      strlen(json_string_value(value)) != json_string_length(value))
-    return false;
-  memcpy(to, json_string_value(value), json_string_length(value) + 1);
+  if (is_null(value)) return true;
+  if (!is_text(value) || strlen(value->text) >= capacity) return false;
+  strcpy(to, value->text);
   return true;
 }
 
-static bool get_integer(const json_t *value, int64_t least, int64_t *to) {
-  if (!json_is_integer(value)) return false;
-  *to = (int64_t)json_integer_value(value);
+static bool get_integer(const laves__json *value, int64_t least, int64_t *to) {
+  if (!laves__json_is(value, LAVES__JSON_INTEGER)) return false;
+  *to = value->integer;
   return *to >= least && (double)*to <= INTEGER_MAX;
 }
 
-static bool get_count(const json_t *value, size_t *to) {
+static bool get_count(const laves__json *value, size_t *to) {
   int64_t count = 0;
   const bool right = get_integer(value, 0, &count);
   *to = (size_t)count;
   return right;
 }
 
-static bool get_later(const json_t *value, size_t *to) {
+static bool get_later(const laves__json *value, size_t *to) {
   *to = SIZE_MAX;
-  return json_is_null(value) || get_count(value, to);
+  return is_null(value) || get_count(value, to);
 }
 
-static bool get_number(const json_t *value, double *to) {
-  *to = json_is_number(value) ? json_number_value(value) : NAN;
-  return json_is_number(value) || json_is_null(value);
+static bool get_number(const laves__json *value, double *to) {
+  *to = is_number(value) ? value->number : NAN;
+  return is_number(value) || is_null(value);
 }
 
 /* Item i of an array, or the value itself where only one is wanted; NULL when there is none. */
-static const json_t *item_of(const json_t *value, size_t i, size_t count) {
+static const laves__json *item_of(const laves__json *value, size_t i, size_t count) {
   if (count == 1) return value;
-  return json_is_array(value) && json_array_size(value) == count ? json_array_get(value, i) : NULL;
+  return laves__json_is(value, LAVES__JSON_ARRAY) && value->count == count ? laves__json_at(value, i) : NULL;
 }
 
-static bool get_choice(const json_t *value, const char *const *names, int *to) {
-  if (!json_is_string(value)) return false;
+static bool get_choice(const laves__json *value, const char *const *names, int *to) {
+  if (!is_text(value)) return false;
   for (int i = 0; names[i]; i++)
-    if (strcmp(json_string_value(value), names[i]) == 0) {
+    if (strcmp(value->text, names[i]) == 0) {
       *to = i;
       return true;
     }
   return false;
 }
 
-static bool get_value(const json_t *value, const laves__member *member, void *to) {
+static bool get_value(const laves__json *value, const laves__member *member, void *to) {
   int choice = 0;
   bool right = true;
   switch (member->kind) {
@@ -94,14 +102,14 @@ static bool get_value(const json_t *value, const laves__member *member, void *to
       for (size_t i = 0; i < member->count && right; i++) right = get_number(item_of(value, i, member->count), (double *)to + i);
       return right;
     case LAVES__MEMBER_LATER_NUMBER:
-      *(double *)to = json_number_value(value); /* 0 for null */
-      return json_is_number(value) || json_is_null(value);
+      *(double *)to = is_number(value) ? value->number : 0;
+      return is_number(value) || is_null(value);
     case LAVES__MEMBER_LATER_FLAG:
-      *(bool *)to = json_is_true(value);
-      return json_is_boolean(value) || json_is_null(value);
+      *(bool *)to = is_true(value);
+      return is_flag(value) || is_null(value);
     case LAVES__MEMBER_FLAG:
-      *(bool *)to = json_is_true(value);
-      return json_is_boolean(value);
+      *(bool *)to = is_true(value);
+      return is_flag(value);
     case LAVES__MEMBER_ALIGN:
       right = get_choice(value, laves__align_names, &choice);
       *(laves_align *)to = (laves_align)choice;
@@ -145,12 +153,13 @@ static bool may_be_missing(const laves__member *member) {
          member->kind == LAVES__MEMBER_LATER_FLAG;
 }
 
-static laves_result read_members(const reader *r, const char *group, const json_t *object) {
+static laves_result read_members(const reader *r, const char *group, const laves__json *object) {
+  static const laves__json missing = {.kind = LAVES__JSON_NULL};
   for (size_t i = 0; i < laves__certificate_member_count; i++) {
     const laves__member *member = &laves__certificate_members[i];
     if (strcmp(member->group, group) != 0) continue;
-    const json_t *value = json_object_get(object, member->name);
-    if (!value && may_be_missing(member)) value = json_null();
+    const laves__json *value = laves__json_member(object, member->name);
+    if (!value && may_be_missing(member)) value = &missing;
     if (!value) return fail_member(r, group, member->name, "is missing");
     if (!get_value(value, member, (char *)r->certificate + member->offset))
       return fail_member(r, group, member->name, need_of(member));
@@ -158,19 +167,19 @@ static laves_result read_members(const reader *r, const char *group, const json_
   return LAVES_OK;
 }
 
-static laves_result read_group(const reader *r, const laves__member_group *group, const json_t *root) {
-  const json_t *object = json_object_get(root, group->name);
-  if (group->flag && (json_is_null(object) || (!object && group->is_later))) return LAVES_OK;
-  if (!json_is_object(object)) return fail_member(r, "", group->name, "is missing, or is no object");
+static laves_result read_group(const reader *r, const laves__member_group *group, const laves__json *root) {
+  const laves__json *object = laves__json_member(root, group->name);
+  if (group->flag && (is_null(object) || (!object && group->is_later))) return LAVES_OK;
+  if (!laves__json_is(object, LAVES__JSON_OBJECT)) return fail_member(r, "", group->name, "is missing, or is no object");
   if (group->flag) *((bool *)((char *)r->certificate + group->flag)) = true;
   return read_members(r, group->name, object);
 }
 
 /* ---- exceptions ---- */
 
-static int find_key(const json_t *value, const char *(*key)(int), int count) {
-  for (int i = 0; json_is_string(value) && i < count; i++)
-    if (strcmp(json_string_value(value), key(i)) == 0) return i;
+static int find_key(const laves__json *value, const char *(*key)(int), int count) {
+  for (int i = 0; is_text(value) && i < count; i++)
+    if (strcmp(value->text, key(i)) == 0) return i;
   return -1;
 }
 
@@ -178,40 +187,41 @@ static const char *exception_key(int i) { return laves_exception_key((laves_exce
 static const char *cause_key(int i) { return laves_cause_key((laves_cause)i); }
 
 /* What older certificates do not tell. */
-static bool get_later_number(const json_t *value, double *to) {
+static bool get_later_number(const laves__json *value, double *to) {
   *to = NAN;
   return !value || get_number(value, to);
 }
 
-static bool read_exception(const json_t *object, laves_exception *e) {
-  const json_t *place = json_object_get(object, "place");
-  const int kind = find_key(json_object_get(object, "kind"), exception_key, LAVES_EXCEPTION_COUNT);
-  const int cause = find_key(json_object_get(object, "cause"), cause_key, LAVES_CAUSE_COUNT);
+static bool read_exception(const laves__json *object, laves_exception *e) {
+  const laves__json *place = laves__json_member(object, "place");
+  const int kind = find_key(laves__json_member(object, "kind"), exception_key, LAVES_EXCEPTION_COUNT);
+  const int cause = find_key(laves__json_member(object, "cause"), cause_key, LAVES_CAUSE_COUNT);
   if (kind < 0 || cause < 0) return false;
   e->kind = (laves_exception_kind)kind;
   e->cause = (laves_cause)cause;
   for (size_t i = 0; i < 3; i++)
     if (!get_number(item_of(place, i, 3), &e->place[i])) return false;
-  return get_number(json_object_get(object, "value"), &e->value) && get_number(json_object_get(object, "limit"), &e->limit) &&
-         get_integer(json_object_get(object, "index"), -1, &e->index) &&
-         get_number(json_object_get(object, "curvature_radius"), &e->curvature_radius) &&
-         get_later_number(json_object_get(object, "crease_angle"), &e->crease_angle);
+  return get_number(laves__json_member(object, "value"), &e->value) &&
+         get_number(laves__json_member(object, "limit"), &e->limit) &&
+         get_integer(laves__json_member(object, "index"), -1, &e->index) &&
+         get_number(laves__json_member(object, "curvature_radius"), &e->curvature_radius) &&
+         get_later_number(laves__json_member(object, "crease_angle"), &e->crease_angle);
 }
 
-static laves_result read_exceptions(const reader *r, const json_t *root) {
-  const json_t *object = json_object_get(root, "exceptions");
-  const json_t *counts = json_object_get(object, "counts"), *listed = json_object_get(object, "listed");
+static laves_result read_exceptions(const reader *r, const laves__json *root) {
+  const laves__json *object = laves__json_member(root, "exceptions");
+  const laves__json *counts = laves__json_member(object, "counts"), *listed = laves__json_member(object, "listed");
   laves_certificate *c = r->certificate;
   for (int i = 0; i < LAVES_EXCEPTION_COUNT; i++) {
-    const json_t *count = json_object_get(counts, exception_key(i));
+    const laves__json *count = laves__json_member(counts, exception_key(i));
     if (!count && i >= LAVES__LATER_EXCEPTION) continue;
     if (!get_count(count, &c->exception_counts[i]))
       return fail_member(r, "exceptions.counts", exception_key(i), "must be a count");
   }
-  if (!json_is_array(listed) || json_array_size(listed) > LAVES_EXCEPTION_CAPACITY)
+  if (!laves__json_is(listed, LAVES__JSON_ARRAY) || listed->count > LAVES_EXCEPTION_CAPACITY)
     return fail_member(r, "exceptions", "listed", "must be an array that is not too long");
-  for (size_t i = 0; i < json_array_size(listed); i++) {
-    if (!read_exception(json_array_get(listed, i), &c->exceptions[i])) {
+  for (size_t i = 0; i < listed->count; i++) {
+    if (!read_exception(laves__json_at(listed, i), &c->exceptions[i])) {
       char name[32];
       snprintf(name, sizeof name, "listed[%zu]", i);
       return fail_member(r, "exceptions", name, "is no exception as docs/certificate.md tells");
@@ -223,18 +233,18 @@ static laves_result read_exceptions(const reader *r, const json_t *root) {
 
 /* ---- all ---- */
 
-static laves_result read_root(const reader *r, const json_t *root) {
-  const json_t *kind = json_object_get(root, "certificate");
-  if (!json_is_string(kind) || strcmp(json_string_value(kind), "laves") != 0)
+static laves_result read_root(const reader *r, const laves__json *root) {
+  const laves__json *kind = laves__json_member(root, "certificate");
+  if (!is_text(kind) || strcmp(kind->text, "laves") != 0)
     return laves__fail(r->error, LAVES_ERROR_INPUT,
                        "%s: it is no certificate of a mesh: its member 'certificate' is not \"laves\"", r->path);
   int64_t schema = 0;
-  if (!get_integer(json_object_get(root, "schema"), 1, &schema)) return fail_member(r, "", "schema", "must be a whole number");
+  if (!get_integer(laves__json_member(root, "schema"), 1, &schema)) return fail_member(r, "", "schema", "must be a whole number");
   if (schema != LAVES__CERTIFICATE_SCHEMA)
     return laves__fail(r->error, LAVES_ERROR_INPUT,
                        "%s: the certificate has schema %lld, and only %d is known here; use a newer laves", r->path,
                        (long long)schema, LAVES__CERTIFICATE_SCHEMA);
-  if (!get_text(json_object_get(root, "version"), r->certificate->version, sizeof r->certificate->version))
+  if (!get_text(laves__json_member(root, "version"), r->certificate->version, sizeof r->certificate->version))
     return fail_member(r, "", "version", "must be a text that is not too long");
   laves_result result = LAVES_OK;
   for (size_t i = 0; i < laves__certificate_group_count && result == LAVES_OK; i++)
@@ -257,15 +267,14 @@ static laves_result refuse_large(const char *path, laves_error *error) {
   return LAVES_OK;
 }
 
-laves_result laves__certificate_parse(const char *bytes, size_t length, const char *name, laves_certificate *certificate,
-                                      laves_error *error) {
+laves_result laves__certificate_parse(laves_context *context, const char *bytes, size_t length, const char *name,
+                                      laves_certificate *certificate, laves_error *error) {
   const reader r = {name, certificate, error};
-  json_error_t wrong;
+  laves__json_tree tree;
   set_unknown(certificate);
-  json_t *root = json_loadb(bytes, length, JSON_REJECT_DUPLICATES, &wrong);
-  if (!root) return laves__fail(error, LAVES_ERROR_INPUT, "%s:%d: it is no JSON: %s", name, wrong.line, wrong.text);
-  const laves_result result = read_root(&r, root);
-  json_decref(root);
+  laves_result result = laves__json_parse(context, bytes, length, name, &tree, error);
+  if (result == LAVES_OK) result = read_root(&r, tree.item);
+  laves__json_free(&tree);
   return result;
 }
 
@@ -276,7 +285,7 @@ laves_result laves_certificate_read(laves_context *context, const char *path, la
   laves_result result = refuse_large(path, error);
   if (result == LAVES_OK) result = laves__file_read(context, path, &bytes, &length, error);
   if (result != LAVES_OK) return result;
-  result = laves__certificate_parse(bytes, length, path, certificate, error);
+  result = laves__certificate_parse(context, bytes, length, path, certificate, error);
   laves__free(context, bytes, length + 1, 1);
   return result;
 }

@@ -63,7 +63,7 @@ static laves_result write_one(laves_context *context, const laves_mesh *mesh, co
   return finish(&out, error);
 }
 
-/* All three files are complete before the first is renamed. */
+/* All three files are complete before the first is renamed, and all are renamed or none. */
 static laves_result write_tetgen(laves_context *context, const laves_mesh *mesh, const char *path, laves_error *error) {
   static const char *const endings[] = {".node", ".ele", ".face"};
   static void (*const writers[])(laves__output *, const laves_mesh *) = {laves__write_tetgen_node, laves__write_tetgen_ele,
@@ -82,7 +82,7 @@ static laves_result write_tetgen(laves_context *context, const laves_mesh *mesh,
     if (laves__output_open(out, context, name) == LAVES_OK) writers[opened](out, mesh);
     result = laves__output_complete(out);
   }
-  for (int i = 0; i < FILES && result == LAVES_OK; i++) result = laves__output_publish(&outs[i]);
+  if (result == LAVES_OK) result = laves__output_publish_all(outs, FILES);
   for (int i = 0; i < opened; i++) finish(&outs[i], error);
   return result;
 }

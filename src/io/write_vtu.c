@@ -241,7 +241,7 @@ static void write_compressed(laves__output *out, const array *a) {
 }
 
 static void free_compressed(laves_context *context, array *a) {
-  for (size_t i = 0; i < a->block_count && a->blocks; i++) laves__free(context, a->blocks[i], a->header[3 + i], 1);
+  for (size_t i = 0; i < a->block_count && a->blocks && a->header; i++) laves__free(context, a->blocks[i], a->header[3 + i], 1);
   laves__free(context, a->blocks, a->block_count, sizeof *a->blocks);
   laves__free(context, a->header, 3 + a->block_count, sizeof *a->header);
 }
@@ -403,10 +403,11 @@ void laves__write_vtu(laves__output *out, const laves_mesh *mesh, bool ascii, in
   array arrays[ARRAY_COUNT];
   describe_arrays(&g, arrays);
   if (f == COMPRESSED) compress_arrays(out, arrays, compression_level);
-  for (int i = 0; i < array_count(&g); i++)
+  const bool ready = out->error.result == LAVES_OK; /* else some arrays have no blocks */
+  for (int i = 0; i < array_count(&g) && ready; i++)
     out->expected += f == COMPRESSED ? (double)compressed_bytes(&arrays[i]) : (double)raw_bytes(&arrays[i]);
-  write_xml(out, &g, arrays, f);
-  if (f != TEXT) write_appended(out, arrays, f);
+  if (ready) write_xml(out, &g, arrays, f);
+  if (ready && f != TEXT) write_appended(out, arrays, f);
   laves__output_printf(out, "</VTKFile>\n");
   for (int i = 0; i < ARRAY_COUNT; i++) free_compressed(out->context, &arrays[i]);
 }

@@ -79,34 +79,35 @@ bool laves__layer_extend(laves__layer *layer, size_t extra) {
   return true;
 }
 
-/* A longer array in the place of one with `old` items; false when memory is short. NULL stays NULL. */
-static bool lengthen(laves_context *context, void *array, size_t old, size_t extra, size_t size) {
-  void **block = array;
-  if (!*block) return true;
-  void *longer = laves__realloc(context, *block, old, old + extra, size);
-  if (!longer) return false;
-  *block = longer;
-  return true;
+/* An array of the vertices, to be replaced by a longer one. */
+typedef struct vertex_array {
+  void *array; /* the address of its pointer, which is NULL where the layer has none */
+  size_t size; /* of an item */
+  void *longer;
+} vertex_array;
+
+/* The longer arrays are all made before the first takes its place, for then nothing has to be undone when memory is short. */
+static bool lengthen(laves_context *context, vertex_array *all, size_t array_count, size_t old, size_t extra) {
+  bool memory = true;
+  for (size_t i = 0; i < array_count; i++)
+    if (*(void **)all[i].array) memory = (all[i].longer = laves__alloc(context, old + extra, all[i].size)) && memory;
+  for (size_t i = 0; i < array_count; i++) {
+    void **block = all[i].array;
+    if (memory && *block) memcpy(all[i].longer, *block, old * all[i].size);
+    laves__free(context, memory ? *block : all[i].longer, memory ? old : old + extra, all[i].size);
+    if (memory) *block = all[i].longer;
+  }
+  return memory;
 }
 
-/* Each array grows by itself: when one can't, those before it are shortened again, which never fails to leave a block in place.
- */
 bool laves__layer_extend_vertices(laves__layer *l, size_t extra) {
   const size_t old = l->vertex_count;
-  struct {
-    void *array;
-    size_t size;
-  } const all[] = {
-      {&l->position, sizeof *l->position}, {&l->normal, sizeof *l->normal}, {&l->hint, sizeof *l->hint},
-      {&l->depth, sizeof *l->depth},       {&l->hold, sizeof *l->hold},     {&l->off_surface, sizeof *l->off_surface},
-      {&l->scale, sizeof *l->scale},       {&l->origin, sizeof *l->origin}, {&l->star, sizeof *l->star}};
-  size_t grown = 0;
-  if (old + extra > INT32_MAX) return false;
-  while (grown < LAVES__COUNT_OF(all) && lengthen(l->context, all[grown].array, old, extra, all[grown].size)) grown++;
-  if (grown < LAVES__COUNT_OF(all)) {
-    for (size_t i = 0; i < grown; i++) lengthen(l->context, all[i].array, old + extra, (size_t)0 - extra, all[i].size);
-    return false;
-  }
+  vertex_array all[] = {{&l->position, sizeof *l->position, NULL}, {&l->normal, sizeof *l->normal, NULL},
+                        {&l->hint, sizeof *l->hint, NULL},         {&l->depth, sizeof *l->depth, NULL},
+                        {&l->hold, sizeof *l->hold, NULL},         {&l->off_surface, sizeof *l->off_surface, NULL},
+                        {&l->scale, sizeof *l->scale, NULL},       {&l->origin, sizeof *l->origin, NULL},
+                        {&l->star, sizeof *l->star, NULL}};
+  if (old + extra > INT32_MAX || !lengthen(l->context, all, LAVES__COUNT_OF(all), old, extra)) return false;
   l->vertex_count = old + extra;
   for (size_t v = old; v < l->vertex_count; v++) {
     l->position[v] = l->normal[v] = v3(0, 0, 0);

@@ -43,7 +43,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length) {
   laves_certificate certificate;
   laves_error error = {0};
   FUZZ_REQUIRE(context != NULL);
-  const laves_result result = laves__certificate_parse((const char *)bytes, length, "input", &certificate, &error);
+  const laves_result result = laves__certificate_parse(context, (const char *)bytes, length, "input", &certificate, &error);
   FUZZ_REQUIRE(result == LAVES_OK || (result == LAVES_ERROR_INPUT && error.result == result && strlen(error.text) > 10));
   if (result == LAVES_OK) {
     require_ranges(&certificate);

@@ -15,7 +15,7 @@ if(LAVES_FUZZERS)
     PRIVATE ${PROJECT_SOURCE_DIR}/src ${LUA_INCLUDE_DIR})
   target_compile_definitions(laves-fuzzed PRIVATE LAVES_BUILD PUBLIC LAVES_VALIDATE LAVES_PTHREADS)
   target_compile_options(laves-fuzzed PUBLIC -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all)
-  target_link_libraries(laves-fuzzed PUBLIC ZLIB::ZLIB ${LUA_LIBRARIES} PkgConfig::JANSSON Threads::Threads m)
+  target_link_libraries(laves-fuzzed PUBLIC ZLIB::ZLIB ${LUA_LIBRARIES} Threads::Threads m)
 endif()
 
 foreach(source ${LAVES_FUZZ_TARGETS})
