@@ -618,18 +618,16 @@ static int32_t region_at(const array *a, size_t i) {
 static int corner_count(int64_t type) {
   switch (type) {
     case 10:
-      return 4; /* tetrahedron */
     case 24:
     case 71:
     case 79:
-      return 4; /* quadratic, Lagrange, Bezier */
+      return 4; /* tetrahedron: linear, quadratic, Lagrange, Bezier */
     case 5:
-      return 3; /* triangle */
     case 22:
     case 34:
     case 69:
     case 76:
-      return 3; /* quadratic, biquadratic, Lagrange, Bezier */
+      return 3; /* triangle: linear, quadratic, biquadratic, Lagrange, Bezier */
     default:
       return 0;
   }
