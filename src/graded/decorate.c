@@ -69,8 +69,7 @@ static laves_result mark_candidates(laves__sites *sites, laves_error *error) {
     }
     sites->gone[corners + i] = n->even && laves__site_look(sites, corners + i).colour >= 2;
   }
-  for (size_t i = 0; enough && i < corners; i++)
-    sites->gone[i] = leaves[i] == 8 && laves__site_look(sites, i).colour >= 2;
+  for (size_t i = 0; enough && i < corners; i++) sites->gone[i] = leaves[i] == 8 && laves__site_look(sites, i).colour >= 2;
   laves__free(context, side, corners, sizeof *side);
   laves__free(context, leaves, corners, 1);
   return enough ? LAVES_OK : laves__fail_memory(context, error);

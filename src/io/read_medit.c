@@ -152,7 +152,7 @@ static laves_result read_binary_vertices(binary_file *f, laves_error *error) {
 }
 
 static laves_result read_binary_elements(binary_file *f, const shape *s, laves_error *error) {
-  int64_t count, row[NODES_MAX + 1];
+  int64_t count, row[NODES_MAX + 1] = {0};
   if (!next_integer(f, &count)) return fail_short(f, error, "the number of elements");
   laves_result result = LAVES_OK;
   for (int64_t i = 0; i < count && result == LAVES_OK; i++) {
