@@ -55,6 +55,7 @@ static laves_result fail_short(const reader *r, const char *at, const char *what
 }
 
 static uint64_t big_endian(const char *at, size_t bytes) {
+  LAVES_ASSERT(at);
   uint64_t bits = 0;
   for (size_t i = 0; i < bytes; i++) bits = bits << 8 | (uint8_t)at[i];
   return bits;
