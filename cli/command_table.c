@@ -75,6 +75,20 @@ const option option_rows[] = {
     {"cells", 0, TILING, IN_TILING, OPTION_CELLS, "N[,N,N]", "cells", false, 1, 1000, "4", MEMBER(cells), 0,
      "periods along each axis, 136 tetrahedra in each cell"},
 
+    {"surface", 0, CHECK, IN_CHECK, OPTION_WORD, "INPUT", NULL, false, 0, 0, NULL, MEMBER(surface), 0,
+     "the solid that the mesh should fill, as `laves mesh` takes it: distances are measured both ways"},
+    {"window", 0, CHECK, IN_CHECK, OPTION_WINDOW, "LO,HI", "degrees", false, 0, 180, "40,125", MEMBER(window), 0,
+     "range for every dihedral angle (LO 0..60, HI 80..180); when given, exit code 3 if it or --volume-length is missed"},
+    {"volume-length", 0, CHECK, IN_CHECK, OPTION_REAL, "Q", NULL, false, 0, 0.8, "0.6", MEMBER(volume_length), 0,
+     "lowest volume-length ratio; when given, exit code 3 if it is missed"},
+    {"features", 0, CHECK, IN_CHECK, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(check_features), 0,
+     "measure how well the mesh keeps the creases and corners of --surface; exit code 3 when a crease that is longer than the "
+     "edges near by, or a corner, is lost"},
+    {"feature-angle", 0, CHECK, IN_CHECK, OPTION_REAL, "DEG", "degrees", false, 1, 179, "40", MEMBER(feature_angle), 0,
+     "with --features: what counts as a crease, edges of the surface where its normal turns by more"},
+    {"list", 0, CHECK, IN_CHECK, OPTION_COUNT, "N", "places", false, 0, 100000, "5", MEMBER(list), 0,
+     "how many of the worst places to list"},
+
     {"winding", 0, MESH | CHECK | INFO, IN_SURFACE, OPTION_REAL, "N", NULL, false, 0.05, 100, "0.5", MEMBER(winding), 0,
      "inside is where a surface winds round a point more often than this: 1.5 for the overlap of closed parts; below 0.5 the "
      "caps "
@@ -146,20 +160,6 @@ const option option_rows[] = {
      "asked range of every dihedral angle (LO 0..60, HI 80..180); exit code 3 when it or --volume-length is missed"},
     {"volume-length", 0, MESH, IN_SHAPE, OPTION_REAL, "Q", NULL, false, 0, 0.8, "0.6", MEMBER(volume_length), 0,
      "asked volume-length ratio of every tetrahedron; exit code 3 when it is missed"},
-    {"surface", 0, CHECK, IN_CHECK, OPTION_WORD, "INPUT", NULL, false, 0, 0, NULL, MEMBER(surface), 0,
-     "the solid that the mesh should fill, as `laves mesh` takes it: distances are measured both ways"},
-    {"window", 0, CHECK, IN_CHECK, OPTION_WINDOW, "LO,HI", "degrees", false, 0, 180, "40,125", MEMBER(window), 0,
-     "range for every dihedral angle (LO 0..60, HI 80..180); when given, exit code 3 if it or --volume-length is missed"},
-    {"volume-length", 0, CHECK, IN_CHECK, OPTION_REAL, "Q", NULL, false, 0, 0.8, "0.6", MEMBER(volume_length), 0,
-     "lowest volume-length ratio; when given, exit code 3 if it is missed"},
-    {"features", 0, CHECK, IN_CHECK, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(check_features), 0,
-     "measure how well the mesh keeps the creases and corners of --surface; exit code 3 when a crease that is longer than the "
-     "edges near by, or a corner, is lost"},
-    {"feature-angle", 0, CHECK, IN_CHECK, OPTION_REAL, "DEG", "degrees", false, 1, 179, "40", MEMBER(feature_angle), 0,
-     "with --features: what counts as a crease, edges of the surface where its normal turns by more"},
-    {"list", 0, CHECK, IN_CHECK, OPTION_COUNT, "N", "places", false, 0, 100000, "5", MEMBER(list), 0,
-     "how many of the worst places to list"},
-
     {"cut", 0, VIEW, IN_PICTURE, OPTION_WORD, "PLANE", NULL, false, 0, 0, NULL, MEMBER(cut), 0,
      "leave out what lies in front of a plane: x, y or z through the middle, or a,b,c,d for what has a corner with "
      "a x + b y + c z > d"},

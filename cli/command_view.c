@@ -89,7 +89,8 @@ static laves_result read_cut(session *run, const laves_mesh *mesh, const picture
   what->cut = true;
   if (strlen(cut) == 1 && strchr("xyz", *cut)) {
     cut_through_middle(mesh, *cut - 'x', how, what);
-  } else if (sscanf(cut, "%lf,%lf,%lf,%lf%c", &plane[0], &plane[1], &plane[2], &plane[3], &rest) != 4) {
+  } else if (sscanf(cut, "%lf,%lf,%lf,%lf%c", &plane[0], &plane[1], &plane[2], &plane[3], &rest) != 4 || !isfinite(plane[0]) ||
+             !isfinite(plane[1]) || !isfinite(plane[2]) || !isfinite(plane[3])) {
     return session_fail(run, LAVES_ERROR_OPTION,
                         "option '--cut' needs x, y, z or the four numbers of a plane such as 1,0,0,0.5, not '%.60s'", cut);
   }

@@ -208,7 +208,7 @@ static float *occlusion_map(const camera *c, const scene *subject, const raster_
         continue;
       }
       size_t j = (size_t)py * (size_t)width + (size_t)px;
-      if (fabs(pixels[j].nearness / pixels[i].nearness - 1) < 0.01) {
+      if (fabsf(pixels[j].nearness / pixels[i].nearness - 1) < 0.01) {
         sum += raw[j];
         weight += 1;
       }

@@ -59,6 +59,7 @@ static inline laves__ring laves__ring_of(const laves__lattice *lattice, laves__s
 }
 static inline laves__site laves__ring_at(const laves__ring *ring, int k) {
   if (ring->vertex) return laves__site_of((uint32_t)ring->vertex[k]);
+  LAVES_ASSERT(ring->around); /* a ring of none is not asked */
   return (laves__site){ring->around[ring->link[k].cell], ring->link[k].site};
 }
 

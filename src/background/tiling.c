@@ -136,6 +136,7 @@ static laves_result stamp(laves_context *context, tiling *t, laves_error *error)
 static laves_result add_faces(laves_context *context, laves_mesh *mesh, laves_error *error) {
   uint64_t *slots;
   size_t count;
+  LAVES_ASSERT(mesh);
   laves_result result = laves__boundary_slots(context, "boundary", (const int32_t(*)[4])mesh->tets, mesh->tet_count,
                                               mesh->vertex_count, &slots, &count, error);
   if (result != LAVES_OK) return result;

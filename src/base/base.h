@@ -43,9 +43,18 @@ bool laves__grow(laves_context *context, void *block, size_t *capacity, size_t n
 
 /* Fills error (may be NULL) with result and a printf sentence, and returns result. */
 laves_result laves__fail(laves_error *error, laves_result result, const char *format, ...) __attribute__((format(printf, 3, 4)));
-/* The standard sentence for a failed allocation; tells the limit where there is one. */
-laves_result laves__fail_memory(const laves_context *context, laves_error *error);
-laves_result laves__fail_cancelled(laves_error *error);
+void laves__tell_memory(const laves_context *context, laves_error *error);
+void laves__tell_cancelled(laves_error *error);
+/* The standard sentence for a failed allocation; tells the limit where there is one. Inline, so that compilers and analysers
+ * see that it never returns LAVES_OK. */
+static inline laves_result laves__fail_memory(const laves_context *context, laves_error *error) {
+  laves__tell_memory(context, error);
+  return LAVES_ERROR_MEMORY;
+}
+static inline laves_result laves__fail_cancelled(laves_error *error) {
+  laves__tell_cancelled(error);
+  return LAVES_ERROR_CANCELLED;
+}
 
 /* ---- progress ---- */
 

@@ -37,19 +37,19 @@ laves_result laves__fail(laves_error *error, laves_result result, const char *fo
   return result;
 }
 
-laves_result laves__fail_memory(const laves_context *context, laves_error *error) {
-  const double mib = 1048576.0;
+void laves__tell_memory(const laves_context *context, laves_error *error) {
+  const double mib = 1048576.0, used = (double)laves_context_bytes(context) / mib;
   const size_t limit = context->options.memory_limit;
   if (limit)
-    return laves__fail(error, LAVES_ERROR_MEMORY,
-                       "the memory limit of %.0f MiB does not suffice (%.0f MiB are in use); raise it or choose a larger size",
-                       (double)limit / mib, (double)laves_context_bytes(context) / mib);
-  return laves__fail(error, LAVES_ERROR_MEMORY, "out of memory with %.0f MiB in use; choose a larger size",
-                     (double)laves_context_bytes(context) / mib);
+    laves__fail(error, LAVES_ERROR_MEMORY,
+                "the memory limit of %.0f MiB does not suffice (%.0f MiB are in use); raise it or choose a larger size",
+                (double)limit / mib, used);
+  else
+    laves__fail(error, LAVES_ERROR_MEMORY, "out of memory with %.0f MiB in use; choose a larger size", used);
 }
 
-laves_result laves__fail_cancelled(laves_error *error) {
-  return laves__fail(error, LAVES_ERROR_CANCELLED, "cancelled before the work was done");
+void laves__tell_cancelled(laves_error *error) {
+  laves__fail(error, LAVES_ERROR_CANCELLED, "cancelled before the work was done");
 }
 
 double laves__wall_seconds(void) {

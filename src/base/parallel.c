@@ -2,8 +2,8 @@
  *
  * Blocks are handed out by an atomic counter, so a slow block does not hold the others up; which worker gets which block
  * differs from run to run, which is why bodies may write only to places that depend on the index. Worker 0 is the calling
- * thread and the only one that reports progress. OpenMP supplies the threads; the thread sanitizer cannot see into
- * GNU OpenMP, so builds with LAVES_PTHREADS start POSIX threads instead. */
+ * thread and the only one that reports progress. OpenMP supplies the threads; builds with LAVES_PTHREADS start POSIX threads
+ * instead, for tools that cannot see into an OpenMP run time. */
 #include <stdatomic.h>
 
 #include "base/base.h"

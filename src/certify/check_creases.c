@@ -65,7 +65,7 @@ static void measure_block(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   for (size_t i = begin; i < end; i++) {
     sample *s = &all->samples[i];
-    laves__vec3 tangent;
+    laves__vec3 tangent = {0, 0, 1}; /* any: only the point is wanted */
     double along;
     if (features->refine) features->refine(features->self, (int32_t)s->crease, &s->point, &tangent);
     s->distance = INFINITY;

@@ -119,16 +119,16 @@ static bool is_bcc_tile(const double squares[6], double least, double tolerance)
 static tile tile_of(const shapes *s, size_t tet) {
   laves__vec3 p[4];
   double squares[6], least = INFINITY;
-  if (!laves__tet_corners(s->mesh, tet, p)) return (tile){0};
+  if (!laves__tet_corners(s->mesh, tet, p)) return (tile){0, false};
   for (int i = 0; i < 6; i++) {
     squares[i] = v3_norm2(v3_sub(p[laves__tet_edge[i][1]], p[laves__tet_edge[i][0]]));
     least = fmin(least, squares[i]);
   }
-  if (!(least > 0) || !isfinite(least)) return (tile){0};
+  if (!(least > 0) || !isfinite(least)) return (tile){0, false};
   const double tolerance = 2 * tolerance_of(s->largest, least);
   if (is_c15_tile(squares, least, tolerance)) return (tile){least / SHORT, false};
   if (is_bcc_tile(squares, least, tolerance)) return (tile){least / BCC_SHORT, true};
-  return (tile){0};
+  return (tile){0, false};
 }
 
 /* Whether one unit is the other times a power of two, the nearest: *level. */

@@ -16,11 +16,11 @@ static const uint32_t k[64] = {0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0
 static uint32_t rotr(uint32_t x, int bits) { return x >> bits | x << (32 - bits); }
 
 /* One step of section 6.2.2; the eight working variables change places by name instead of moving. */
-#define STEP(a, b, c, d, e, f, g, h, t)                                                                    \
-  do {                                                                                                     \
-    const uint32_t t1 = h + (rotr(e, 6) ^ rotr(e, 11) ^ rotr(e, 25)) + ((e & f) ^ (~e & g)) + k[t] + w[t]; \
-    d += t1;                                                                                               \
-    h = t1 + (rotr(a, 2) ^ rotr(a, 13) ^ rotr(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));                     \
+#define STEP(a, b, c, d, e, f, g, h, t)                                                                              \
+  do {                                                                                                               \
+    const uint32_t t1 = (h) + (rotr(e, 6) ^ rotr(e, 11) ^ rotr(e, 25)) + (((e) & (f)) ^ (~(e) & (g))) + k[t] + w[t]; \
+    (d) += t1;                                                                                                       \
+    (h) = t1 + (rotr(a, 2) ^ rotr(a, 13) ^ rotr(a, 22)) + (((a) & (b)) ^ ((a) & (c)) ^ ((b) & (c)));                 \
   } while (0)
 
 static void compress(uint32_t state[8], const unsigned char *bytes) {

@@ -43,7 +43,7 @@ static uint64_t node_hash(const laves__node_data *n) {
 
 static bool same_node(const laves__node_data *a, const laves__node_data *b) {
   return a->op == b->op && memcmp(a->operand, b->operand, sizeof a->operand) == 0 &&
-         memcmp(&a->value, &b->value, sizeof a->value) == 0;
+         memcmp(&a->value, &b->value, sizeof a->value) == 0; /* NOLINT: by bits, so that 0 and -0 stay apart */
 }
 
 static laves__node refuse(laves__expression *e, bool *reason) {
@@ -389,13 +389,13 @@ static bool add_frame(lowering *w, const frame *f) {
 
 /* Coordinate `axis` of a frame as a sum of scaled base nodes. */
 static laves__node frame_coordinate(laves__expression *e, const frame *f, int axis) {
-  const double *row = &f->map.m.row[axis].x, *shift = &f->map.t.x;
+  const laves__vec3 row = f->map.m.row[axis];
   laves__node sum = laves__node_constant(e, 0);
   for (int i = 0; i < 3; i++) {
-    const laves__node term = laves__node_make(e, LAVES__OP_MUL, f->base[i], laves__node_constant(e, row[i]), 0);
+    const laves__node term = laves__node_make(e, LAVES__OP_MUL, f->base[i], laves__node_constant(e, v3_at(row, i)), 0);
     sum = laves__node_make(e, LAVES__OP_ADD, sum, term, 0);
   }
-  return laves__node_make(e, LAVES__OP_ADD, sum, laves__node_constant(e, shift[axis]), 0);
+  return laves__node_make(e, LAVES__OP_ADD, sum, laves__node_constant(e, v3_at(f->map.t, axis)), 0);
 }
 
 laves__node laves__node_leaf_at(laves__expression *e, uint32_t index, const laves__node coordinate[3]) {

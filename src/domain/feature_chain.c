@@ -189,7 +189,11 @@ static bool list_corner_patches(const chaining *c) {
   f->corner_patch = laves__alloc(f->context, f->corner_patch_capacity, sizeof *f->corner_patch);
   if (!f->corner_patch) return false;
   uint32_t room = 0;
-  for (size_t i = 0; i < l->fixed_count; i++) corner_at(c, l->fixed[i].point)->patch_count++;
+  for (size_t i = 0; i < l->fixed_count; i++) {
+    laves__corner *corner = corner_at(c, l->fixed[i].point);
+    LAVES_ASSERT(corner);
+    corner->patch_count++;
+  }
   for (uint32_t p = 0; p < l->point_count; p++) {
     laves__corner *corner = corner_at(c, p);
     if (!corner) continue;
@@ -202,6 +206,7 @@ static bool list_corner_patches(const chaining *c) {
   }
   for (size_t i = 0; i < l->fixed_count; i++) {
     laves__corner *corner = corner_at(c, l->fixed[i].point);
+    LAVES_ASSERT(corner);
     corner->fixed = true;
     insert(f->corner_patch + corner->first_patch, &corner->patch_count, l->fixed[i].patch);
   }

@@ -66,6 +66,7 @@ static bool meet_planes(const laves__vec3 *n, const double *d, int count, laves_
 
 /* Unit gradients and distances; false where one has no slope. The largest distance is returned in *most. */
 static bool linearise(const laves__tape *const *f, int count, laves__vec3 p, laves__vec3 *n, double *d, double *most) {
+  LAVES_ASSERT(count >= 1 && count <= 3);
   *most = 0;
   for (int i = 0; i < count; i++) {
     const laves__dual at = laves__tape_gradient(f[i], p);

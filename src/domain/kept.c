@@ -150,7 +150,7 @@ static laves_result list_drawn(const laves_features *drawn, const kept_node *nod
   laves_result result = LAVES_OK;
   for (size_t i = 0; i < node->point_count && result == LAVES_OK; i++) {
     const laves__vec3 p = image(map, drawn->point[node->first_point + i]);
-    result = v3_finite(p) ? laves_features_add_points(features, &p.x, 1, error) : fail_far(error);
+    result = v3_finite(p) ? laves_features_add_points(features, (double[3]){p.x, p.y, p.z}, 1, error) : fail_far(error);
   }
   for (size_t i = node->first_line; i < node->first_line + node->line_count && result == LAVES_OK; i++) {
     const size_t first = vertices_before(drawn, i), count = drawn->line_end[i] - first;

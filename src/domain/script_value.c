@@ -48,6 +48,7 @@ const char *laves__script_type(lua_State *L, int index) {
 laves__shape laves__script_solid(lua_State *L, int index, const char *function) {
   const laves__value *value = laves__script_value(L, index);
   if (!value) luaL_error(L, "%s: expected a solid, not %s", function, laves__script_type(L, index));
+  LAVES_ASSERT(value); /* luaL_error does not return */
   return value->kind == LAVES__SOLID ? value->shape : laves__shape_of_node(value->shape.node);
 }
 

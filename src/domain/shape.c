@@ -122,18 +122,16 @@ static double times_bound(double factor, double bound) { return factor == 0 ? 0 
 
 /* The box around the image of a box; infinite sides stay infinite where they matter. */
 static laves__box3 box_image(laves__box3 box, const laves__affine *map) {
-  laves__box3 r;
-  const double *lower = &box.lower.x, *upper = &box.upper.x;
-  double *new_lower = &r.lower.x, *new_upper = &r.upper.x;
+  laves__box3 image = {map->t, map->t};
   for (int i = 0; i < 3; i++) {
-    const double *row = &map->m.row[i].x;
-    new_lower[i] = new_upper[i] = v3_at(map->t, i);
+    double *image_lower = v3_slot(&image.lower, i), *image_upper = v3_slot(&image.upper, i);
     for (int k = 0; k < 3; k++) {
-      new_lower[i] += times_bound(row[k], row[k] > 0 ? lower[k] : upper[k]);
-      new_upper[i] += times_bound(row[k], row[k] > 0 ? upper[k] : lower[k]);
+      const double factor = v3_at(map->m.row[i], k), lower = v3_at(box.lower, k), upper = v3_at(box.upper, k);
+      *image_lower += times_bound(factor, factor > 0 ? lower : upper);
+      *image_upper += times_bound(factor, factor > 0 ? upper : lower);
     }
   }
-  return r;
+  return image;
 }
 
 static bool keeps_axes(const laves__mat3 *m) {

@@ -70,6 +70,7 @@ static void number_points(laves__surface *s, const laves__vec3 *points, const bo
 }
 
 static void copy_faces(laves__surface *s, const laves__surface_input *input, const uint32_t *number, laves_domain_info *info) {
+  LAVES_ASSERT(!s->tags || input->tags);
   s->face_count = 0;
   for (size_t f = 0; f < input->triangle_count; f++) {
     const uint32_t *t = input->triangles[f];

@@ -187,7 +187,7 @@ static bool list_regions(compiler *c, laves__node root) {
     }
     tape->regions[tape->region_count++] = r;
   }
-  if (tape->region_count > 0) qsort(tape->regions, tape->region_count, sizeof *tape->regions, compare_regions);
+  if (tape->regions) qsort(tape->regions, tape->region_count, sizeof *tape->regions, compare_regions);
   laves__free(e->context, reached, nodes, sizeof *reached);
   return done;
 }

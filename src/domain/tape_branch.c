@@ -309,8 +309,8 @@ static void drop_dead(cutter *c) {
   for (size_t i = 0; i < c->count; i++) {
     if (!live[i]) continue;
     laves__code_item item = cut->item[i];
-    for (int k = 0; k < 3; k++)
-      if (item.source[k] >= 0 && k < laves__op_operands[cut->tape.instructions[i].op]) item.source[k] = number[item.source[k]];
+    for (int k = 0; k < laves__op_operands[cut->tape.instructions[i].op]; k++)
+      if (item.source[k] >= 0) item.source[k] = number[item.source[k]];
     cut->item[left] = item;
     cut->tape.instructions[left] = cut->tape.instructions[i];
     number[i] = (int32_t)left++;

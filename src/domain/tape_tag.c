@@ -42,7 +42,7 @@ static int32_t deciding_tag(laves__op op, const operand o[3], double tolerance) 
     if (fabs(ahead) <= tolerance) return rank(o[0].tag) <= rank(o[1].tag) ? o[0].tag : o[1].tag;
     return ahead > 0 ? o[0].tag : o[1].tag;
   }
-  for (int k = 0; k < laves__op_operands[op]; k++)
+  for (int k = 0; k < 3; k++) /* operands that the operation lacks have no tag */
     if (o[k].tag != LAVES__NO_TAG) return o[k].tag;
   return LAVES__NO_TAG;
 }

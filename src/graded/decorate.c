@@ -59,9 +59,8 @@ static laves_result mark_candidates(laves__sites *sites, laves_error *error) {
   const size_t corners = sites->corner.count;
   uint8_t *leaves = laves__alloc_zeroed(context, corners, 1);
   int32_t *side = laves__alloc(context, corners, sizeof *side);
-  laves_result result = LAVES_OK;
-  if (!leaves || !side) result = laves__fail_memory(context, error);
-  for (size_t i = 0; result == LAVES_OK && i < tree->leaf_count; i++) {
+  const bool enough = leaves && side;
+  for (size_t i = 0; enough && i < tree->leaf_count; i++) {
     const laves__node *n = &tree->node[tree->leaf[i]];
     for (int k = 0; k < 8; k++) {
       const int32_t corner = laves__key_find(&sites->corner, corner_key(n, k));
@@ -70,11 +69,10 @@ static laves_result mark_candidates(laves__sites *sites, laves_error *error) {
     }
     sites->gone[corners + i] = n->even && laves__site_look(sites, corners + i).colour >= 2;
   }
-  for (size_t i = 0; result == LAVES_OK && i < corners; i++)
-    sites->gone[i] = leaves[i] == 8 && laves__site_look(sites, i).colour >= 2;
+  for (size_t i = 0; enough && i < corners; i++) sites->gone[i] = leaves[i] == 8 && laves__site_look(sites, i).colour >= 2;
   laves__free(context, side, corners, sizeof *side);
   laves__free(context, leaves, corners, 1);
-  return result;
+  return enough ? LAVES_OK : laves__fail_memory(context, error);
 }
 
 static bool is_lonely(const laves__sites *sites, size_t site) {

@@ -130,6 +130,7 @@ static double level_working_set(bundle *b, double tau, double least, laves__vec3
       if (b->model[i] < b->model[low]) low = i;
       if (b->weight[i] > 0 && (high < 0 || b->model[i] > b->model[high])) high = i;
     }
+    LAVES_ASSERT(high >= 0); /* weights sum to 1 */
     const double difference = b->model[high] - b->model[low];
     if (difference <= exact_enough * fabs(b->model[low] - least) || exchange == EXCHANGES_MAX) return b->model[low];
     const laves__vec3 across = v3_sub(b->gradient[b->working[low]], b->gradient[b->working[high]]);

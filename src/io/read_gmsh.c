@@ -456,7 +456,7 @@ static laves_result note_view(reader *r, view_kind kind, laves_error *error) {
   enum { STEP, COMPONENTS, ITEMS, KEPT };
   laves_context *context = r->input->context;
   laves__word name = {"", 0};
-  int64_t count, integers[KEPT] = {0}, integer = 0;
+  int64_t count = 0, integers[KEPT] = {0}, integer = 0;
   laves_result result = read_view_name(r, &name, error);
   if (result == LAVES_OK) result = text_count(r, &count, error);
   for (int64_t i = 0; result == LAVES_OK && i < count; i++) {

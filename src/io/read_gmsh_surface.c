@@ -71,6 +71,7 @@ static laves_result start_tag(laves__surface_build *build, const laves__mesh_inp
 
 /* number[i]: the point that node i became, or -1. */
 static laves_result add_points(laves__surface_build *build, const laves__mesh_input *mesh, int32_t *number) {
+  LAVES_ASSERT(number);
   laves_result result = LAVES_OK;
   for (size_t i = 0; i < mesh->point_count; i++) number[i] = -1;
   for (size_t f = 0; f < mesh->face_count; f++)

@@ -55,6 +55,7 @@ static laves_result fail_short(const reader *r, const char *at, const char *what
 }
 
 static uint64_t big_endian(const char *at, size_t bytes) {
+  LAVES_ASSERT(at);
   uint64_t bits = 0;
   for (size_t i = 0; i < bytes; i++) bits = bits << 8 | (uint8_t)at[i];
   return bits;
@@ -179,7 +180,7 @@ static laves_result read_points(reader *r, laves_error *error) {
 /* ---- cells ---- */
 
 static laves_result read_part(reader *r, const char *keyword, size_t count, row *numbers, laves_error *error) {
-  number_kind kind;
+  number_kind kind = INT8;
   if (!laves__scan_space(&r->scan) || !laves__scan_keyword(&r->scan, keyword))
     return laves__scan_fail_expected(&r->scan, error, keyword);
   const laves_result result = read_kind(r, &kind, error);
@@ -240,7 +241,7 @@ static cell_use use_of(int64_t type) {
 
 static laves_result read_cell(const reader *r, cells *c, cell_use use, laves_error *error) {
   laves__line_list *list = r->input->lines;
-  int64_t size, point, last = -1;
+  int64_t size = 0, point, last = -1;
   laves_result result = begin_cell(r, c, &size, error);
   if (result != LAVES_OK) return result;
   bool enough = true;

@@ -42,7 +42,7 @@ static laves_result read_count(laves__scan *scan, size_t *count, laves_error *er
 }
 
 static laves_result read_vertices(laves__mesh_input *input, laves__scan *scan, laves_error *error) {
-  size_t count;
+  size_t count = 0;
   const laves_result result = read_count(scan, &count, error);
   for (size_t i = 0; i < count && result == LAVES_OK; i++) {
     double xyzr[4];
@@ -56,10 +56,10 @@ static laves_result read_vertices(laves__mesh_input *input, laves__scan *scan, l
 }
 
 static laves_result read_elements(laves__mesh_input *input, laves__scan *scan, const shape *s, laves_error *error) {
-  size_t count;
+  size_t count = 0;
   laves_result result = read_count(scan, &count, error);
   for (size_t i = 0; i < count && result == LAVES_OK; i++) {
-    int64_t row[NODES_MAX + 1];
+    int64_t row[NODES_MAX + 1] = {0};
     for (int j = 0; j <= s->node_count; j++)
       if (!laves__scan_space(scan) || !laves__scan_int(scan, &row[j]))
         return laves__scan_fail_expected(scan, error, j < s->node_count ? "a vertex number" : "an element's reference");
@@ -152,7 +152,7 @@ static laves_result read_binary_vertices(binary_file *f, laves_error *error) {
 }
 
 static laves_result read_binary_elements(binary_file *f, const shape *s, laves_error *error) {
-  int64_t count, row[NODES_MAX + 1];
+  int64_t count, row[NODES_MAX + 1] = {0};
   if (!next_integer(f, &count)) return fail_short(f, error, "the number of elements");
   laves_result result = LAVES_OK;
   for (int64_t i = 0; i < count && result == LAVES_OK; i++) {

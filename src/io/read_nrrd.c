@@ -311,7 +311,7 @@ static laves_result find_places(reader *r, laves_error *error) {
     if (!r->has_origin) image->origin = v3(0, 0, 0);
     return LAVES_OK;
   }
-  double origin[AXES], step[AXES];
+  double origin[AXES] = {0}, step[AXES] = {0};
   for (int a = 0; a < AXES; a++) {
     const laves_result result = place_axis(r, a, &origin[a], &step[a], error);
     if (result != LAVES_OK) return result;

@@ -87,7 +87,7 @@ static laves_result read_format(ply_file *file) {
   for (ply_encoding i = ASCII; i <= BIG_ENDIAN_BINARY; ++i) {
     if (laves__scan_keyword(scan, NAMES[i])) {
       file->encoding = i;
-      strcpy(file->build->input->format, TEXTS[i]);
+      snprintf(file->build->input->format, sizeof file->build->input->format, "%s", TEXTS[i]);
       return LAVES_OK;
     }
   }

@@ -30,7 +30,7 @@ static laves_result check_pause(const laves__mesh_input *input, const laves__sca
 
 laves_result laves__read_tetgen_node(laves__mesh_input *input, int64_t *base, laves_error *error) {
   laves__scan scan = begin_scan(input);
-  int64_t head[4], number;
+  int64_t head[4] = {0}, number;
   laves_result result = read_head(&scan, head, error);
   if (result == LAVES_OK && head[1] != 3) return laves__scan_fail(&scan, error, "the points must have 3 coordinates");
   *base = 0;
@@ -65,7 +65,7 @@ static laves_result read_corners(laves__scan *scan, int64_t base, int count, int
 
 laves_result laves__read_tetgen_ele(laves__mesh_input *input, int64_t base, laves_error *error) {
   laves__scan scan = begin_scan(input);
-  int64_t head[4], further;
+  int64_t head[4] = {0}, further;
   laves_result result = read_head(&scan, head, error);
   if (result == LAVES_OK && head[1] != 4 && head[1] != 10)
     return laves__scan_fail(&scan, error, "the elements must have 4 or 10 points");
@@ -99,7 +99,7 @@ static bool read_marker(const laves__mesh_input *input, laves__scan *scan, int64
 
 laves_result laves__read_tetgen_face(laves__mesh_input *input, int64_t base, laves_error *error) {
   laves__scan scan = begin_scan(input);
-  int64_t head[4];
+  int64_t head[4] = {0};
   laves_result result = read_head(&scan, head, error);
   for (int64_t i = 0; i < head[0] && result == LAVES_OK; i++) {
     int32_t corners[3];

@@ -376,6 +376,7 @@ static laves_result choose_values(reader *r, laves_error *error) {
   if (!values->array || !values->per_tet) keep_candidates(r, values->per_tet);
   const laves_result result = laves__mesh_input_choose_array(r->input, r->candidate_names, r->candidate_count, &chosen, error);
   if (result != LAVES_OK) return result;
+  LAVES_ASSERT(r->candidate_count > 0 && r->candidate_names);
   const laves__word name = r->candidate_names[chosen];
   for (size_t i = r->candidate_count; i-- > 0;) /* backwards: of two equal names in a piece the first counts */
     if (same_name(r->candidate_names[i], name)) r->pieces[r->candidates[i].piece].sources[VALUES] = r->candidates[i].source;
@@ -618,18 +619,16 @@ static int32_t region_at(const array *a, size_t i) {
 static int corner_count(int64_t type) {
   switch (type) {
     case 10:
-      return 4; /* tetrahedron */
     case 24:
     case 71:
     case 79:
-      return 4; /* quadratic, Lagrange, Bezier */
+      return 4; /* tetrahedron: linear, quadratic, Lagrange, Bezier */
     case 5:
-      return 3; /* triangle */
     case 22:
     case 34:
     case 69:
     case 76:
-      return 3; /* quadratic, biquadratic, Lagrange, Bezier */
+      return 3; /* triangle: linear, quadratic, biquadratic, Lagrange, Bezier */
     default:
       return 0;
   }

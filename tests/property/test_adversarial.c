@@ -8,6 +8,7 @@
 
 #include "fixtures/hard_solids.h"
 #include "fixtures/stages.h"
+#include "fixtures/stride.h"
 
 static void mesh_or_sentence(laves_context *context, const laves_function *function, const laves_options *options,
                              const char *name) {
@@ -37,10 +38,10 @@ static void mesh_or_sentence(laves_context *context, const laves_function *funct
   assert_int_equal(laves_context_bytes(context), 0);
 }
 
-/* Every `step`-th solid, from the first on. */
+/* Every `step`-th solid, from the first on; fewer where the stride of tests is more than one. */
 static void mesh_all(const laves_options *options, int first, int step) {
   laves_context *context = laves_context_create(NULL);
-  for (int i = first; i < hard_solid_count; i += step) {
+  for (int i = first; i < hard_solid_count; i += step * test_stride()) {
     const laves_function function = hard_function(&hard_solids[i]);
     mesh_or_sentence(context, &function, options, hard_solids[i].name);
   }

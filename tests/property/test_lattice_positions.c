@@ -10,6 +10,7 @@
 #include "background/c15_table.h"
 #include "fixtures/shapes.h"
 #include "fixtures/stages.h"
+#include "fixtures/stride.h"
 
 /* Makes quarter units of the tiling whole numbers of the input. */
 static const double whole = LAVES__C15_MEAN_EDGE;
@@ -35,7 +36,7 @@ static void mesh_shape(const shape *s, double size, const char *name) {
 /* Boxes of 2 n quarter units: their faces hold whole planes of lattice vertices for some n. */
 static void boxes_on_lattice_planes(void **state) {
   (void)state;
-  for (int n = 5; n <= 24; n++) {
+  for (int n = 5; n <= 24; n += test_stride()) {
     char name[100];
     const double w = n;
     snprintf(name, sizeof name, "box of %d quarter units", 2 * n);
@@ -93,7 +94,7 @@ static void coplanar_parts(void **state) {
       "box(16, 16, 1)",
   };
   laves_context *context = laves_context_create(NULL);
-  for (size_t i = 0; i < LAVES__COUNT_OF(solids); i++) {
+  for (size_t i = 0; i < LAVES__COUNT_OF(solids); i += (size_t)test_stride()) {
     laves_domain *domain;
     laves_mesh *mesh;
     laves_error error = {.text = ""};
@@ -141,7 +142,7 @@ static void plateaus_of_zero(void **state) {
 /* Spheres through whole shells of lattice vertices. */
 static void spheres_through_vertices(void **state) {
   (void)state;
-  for (int square = 100; square <= 160; square += 4) {
+  for (int square = 100; square <= 160; square += 4 * test_stride()) {
     char text[100];
     laves_context *context = laves_context_create(NULL);
     snprintf(text, sizeof text, "x*x + y*y + z*z - %d", square);

@@ -13,6 +13,7 @@
 #include "fixtures/folders.h"
 #include "fixtures/random_expression.h"
 #include "fixtures/shapes.h"
+#include "fixtures/stride.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -158,7 +159,7 @@ static void creases_and_corners_are_all_found(void **state) {
   (void)state;
   static const double sizes[] = {0.03, 0.013};
   for (size_t k = 0; k < LAVES__COUNT_OF(solids); k++)
-    for (size_t j = 0; j < LAVES__COUNT_OF(sizes); j++) {
+    for (size_t j = 0; j < LAVES__COUNT_OF(sizes); j += (size_t)test_stride()) {
       const wanted *w = &solids[k];
       found *f = find(w->text, sizes[j]);
       int corners = 0;
@@ -377,7 +378,7 @@ static void write_solid(char *text, size_t size, uint64_t *seed, int depth) {
 static void random_solids_are_survived(void **state) {
   (void)state;
   int solid_count = 0;
-  for (uint64_t k = 1; k <= 40; k++) {
+  for (uint64_t k = 1; k <= 40; k += (uint64_t)test_stride()) {
     char text[4096] = "";
     uint64_t seed = k;
     write_solid(text, sizeof text, &seed, 4);
@@ -403,14 +404,14 @@ static void random_solids_are_survived(void **state) {
     }
     drop(f);
   }
-  assert_true(solid_count > 20);
+  assert_true(solid_count > 20 / test_stride());
 }
 
 /* Formulas with jumps, poles and slopes without bound. */
 static void random_formulas_are_survived(void **state) {
   (void)state;
   size_t segments = 0;
-  for (uint64_t k = 1; k <= 80; k++) {
+  for (uint64_t k = 1; k <= 80; k += (uint64_t)test_stride()) {
     laves_context *context = laves_context_create(NULL);
     laves__expression e;
     laves__tape tape;
@@ -441,7 +442,7 @@ static void random_formulas_are_survived(void **state) {
     assert_int_equal(laves_context_bytes(context), 0);
     laves_context_free(context);
   }
-  assert_true(segments > 1000);
+  assert_true(segments > 1000 / (size_t)test_stride());
 }
 
 /* Lets everything go on but the search. */

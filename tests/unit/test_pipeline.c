@@ -9,6 +9,7 @@
 
 #include "fixtures/hard_solids.h"
 #include "fixtures/stages.h"
+#include "fixtures/stride.h"
 
 static laves_domain *domain_of(laves_context *context, const char *expression) {
   laves_domain *domain;
@@ -220,7 +221,7 @@ static void cancelling_anywhere_leaves_nothing(void **state) {
 static void short_memory_anywhere_leaves_nothing(void **state) {
   (void)state;
   size_t peak = 0;
-  for (int step = 0; step <= 20; step++) {
+  for (int step = 0; step <= 20; step += test_stride()) {
     laves_context_options context_options = laves_context_options_default();
     context_options.memory_limit = step ? peak * (size_t)step / 20 - (step == 20) : 0;
     laves_context *context = laves_context_create(&context_options);
@@ -265,7 +266,7 @@ static void *refuse(void *user, void *pointer, size_t old_bytes, size_t new_byte
 static void each_refused_allocation_is_survived(void **state) {
   (void)state;
   bool more = true;
-  for (size_t n = 1; more; n++) {
+  for (size_t n = 1; more; n += (size_t)test_stride()) {
     refuser r = {0};
     laves_context_options context_options = laves_context_options_default();
     context_options.reallocate = refuse;

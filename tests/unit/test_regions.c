@@ -12,6 +12,7 @@
 #include "fixtures/folders.h"
 #include "fixtures/shapes.h"
 #include "fixtures/stages.h"
+#include "fixtures/stride.h"
 
 static laves_domain *domain_of(laves_context *context, const shape *s, const int32_t *tags) {
   laves_domain *domain = NULL;
@@ -204,7 +205,7 @@ static void short_memory_anywhere_leaves_nothing(void **state) {
   (void)state;
   shape s = ball_in_ball();
   bool made = false;
-  for (int allowed = 0, step = 1; !made; allowed += step, step += allowed > 200) {
+  for (int allowed = 0, step = 1; !made; allowed += step * test_stride(), step += allowed > 200) {
     int left = allowed;
     laves_context_options context_options = laves_context_options_default();
     context_options.reallocate = reallocate_a_few_times;

@@ -10,6 +10,7 @@
 
 #include "domain/features.h"
 #include "fixtures/assert_close.h"
+#include "fixtures/stride.h"
 
 typedef struct made {
   laves_context *context;
@@ -314,7 +315,9 @@ static void assert_refused(const char *text, bool is_expression, const char *mes
   laves_domain *domain;
   laves_error error = {0};
   const laves_result result = build(context, text, is_expression, &domain, &error);
-  if (result != LAVES_ERROR_INPUT || strncmp(error.text, message, strlen(message)) != 0)
+  /* Under tools that slow everything down the limit of time may come first. */
+  const bool out_of_time = test_stride() > 1 && strstr(error.text, "the script runs for more than 10 seconds");
+  if (result != LAVES_ERROR_INPUT || (strncmp(error.text, message, strlen(message)) != 0 && !out_of_time))
     fail_msg("%.60s: \"%s\", not \"%s\"", text, error.text, message);
   assert_int_equal(laves_context_bytes(context), 0);
   laves_context_free(context);
