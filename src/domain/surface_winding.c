@@ -132,7 +132,7 @@ static void add_triangle(turn *sum, const laves__triangle *t, laves__vec3 p) {
   add_angle(sum, v3_dot(a, v3_cross(b, c)), la * lb * lc + v3_dot(a, b) * lc + v3_dot(b, c) * la + v3_dot(c, a) * lb);
 }
 
-static double quadratic_of(const double f[6], laves__vec3 y) {
+static inline double quadratic_of(const double f[6], laves__vec3 y) {
   return f[0] * y.x * y.x + f[1] * y.y * y.y + f[2] * y.z * y.z + f[3] * y.x * y.y + f[4] * y.y * y.z + f[5] * y.z * y.x;
 }
 
