@@ -43,6 +43,17 @@ static laves_result hold_features(laves__run *r) {
   return result;
 }
 
+/* Where more than this share of the layer is far outside once features are held, and no few tets, nearly all of the solid is
+ * thinner than the size (models: at most 0.1; sheets a small part of the size: 0.8). */
+static const laves__window feature_window = {.min_dihedral = 25, .max_dihedral = 140};
+static const double noise_share = 0.3;
+static const size_t noise_count = 1000;
+
+static bool is_noise(const laves__run *r) {
+  const size_t bad = laves__improve_outside(&feature_window, &r->layer);
+  return bad > noise_count && (double)bad > noise_share * (double)r->layer.tet_count;
+}
+
 laves_result laves__hold_boundary(laves__run *r) {
   r->released = 0;
   r->frame.features = NULL;
@@ -51,7 +62,10 @@ laves_result laves__hold_boundary(laves__run *r) {
   if (result == LAVES_OK && r->rough && !r->frame.features) return laves__stuff_everything(r);
   if (result != LAVES_OK || !r->frame.features) return result;
   r->rough = false; /* features make it so */
-  return hold_features(r);
+  result = hold_features(r);
+  if (result != LAVES_OK || !laves__may_mend(r) || !is_noise(r)) return result;
+  result = laves__stuff_everything(r); /* improvement would be long, and come to this in the end */
+  return result == LAVES_OK ? hold_features(r) : result;
 }
 
 /* Angles that are held while improving are this much, in degrees, inside the promised ones: rounding must not matter. */
@@ -78,8 +92,6 @@ static laves_result improve(laves__run *r, bool again) {
 
 /* Where features come closer than the size allows, angles go before them: step by step vertices are let go of, and improved
  * again, until all is inside a wide window. */
-static const laves__window feature_window = {.min_dihedral = 25, .max_dihedral = 140};
-
 static laves_result release_features(laves__run *r) {
   laves_result result = LAVES_OK;
   for (int what = LAVES__RELEASE_OFF; what < LAVES__RELEASES && result == LAVES_OK && r->options->improve; what++) {

@@ -120,6 +120,10 @@ void laves__winding_free(laves_context *context, laves__winding *w);
 /* How often the surface winds round p, leaving out the triangles in slots skip_a and skip_b (LAVES__NONE: none). An
  * integer for closed surfaces, but for the error of the expansions. */
 double laves__winding_number(const laves__winding *w, laves__vec3 p, uint32_t skip_a, uint32_t skip_b);
+/* How the number changes with p. An estimate, by the same expansions. */
+laves__vec3 laves__winding_gradient(const laves__winding *w, laves__vec3 p);
+/* The part of one directed edge in 4 pi times the gradient; edges used both ways cancel, and the rim is left. */
+laves__vec3 laves__edge_winding_gradient(laves__vec3 a, laves__vec3 b, laves__vec3 p);
 
 /* ---- surface ---- */
 

@@ -19,18 +19,18 @@
 static const double four_pi = 12.566370614359172;
 /* More than the error of the expansion of far nodes. */
 static const double winding_error = 0.01;
-/* Steps of the central differences in parts of the distance to the rim; the number changes on that scale. */
-static const double difference_step = 0.05;
 /* How far from 1/2 the mean of both sides of a face may be for it to count as plain; 1/2 would be its limit. */
 static const double plain_margin = 0.3;
 /* How much further than the face the rim must be for it not to matter. */
 static const double rim_room = 4;
 /* A node of the rim's tree is taken as a whole from this many of its widths on. */
 static const double whole_node = 1;
-/* A start this near to one half is on the cap already. */
+/* A place where the number is this near to one half is on the cap. */
 static const double on_cap = 1e-9;
+/* Diagonals: brackets of the cap this narrow are searched no further. */
+static const double narrow = 1e-12;
 
-enum { SAMPLES = 32, BISECTIONS = 50, EXPANSIONS = 6, LONG_RIM = 1024 };
+enum { SAMPLES = 32, CAP_STEPS = 60, EXPANSIONS = 6, LONG_RIM = 4096 };
 
 /* ---- building ---- */
 
@@ -150,25 +150,14 @@ static double rim_distance(const laves__surface *s, laves__vec3 p, double reach)
   return n.slot == LAVES__NONE ? reach : sqrt(n.distance2);
 }
 
-/* Exact, in time that grows with the rim. With u and v the offsets of the ends of an edge, its part is
- * (u x v) (|u| + |v|) / (|u| |v| (|u| |v| + u.v)) / 4 pi. */
+/* Exact, in time that grows with the rim. */
 static laves__vec3 gradient_by_rim(const laves__surface *s, laves__vec3 p) {
   laves__vec3 sum = v3(0, 0, 0);
   for (size_t i = 0; i < s->rim_tree.count; i++) {
     const laves__triangle *edge = &s->rim_tree.triangles[i];
-    const laves__vec3 u = v3_sub(edge->a, p), v = v3_sub(edge->b, p);
-    const double lu = v3_norm(u), lv = v3_norm(v), bottom = lu * lv * (lu * lv + v3_dot(u, v));
-    if (bottom > 0) sum = v3_mad(sum, v3_cross(u, v), (lu + lv) / bottom);
+    sum = v3_add(sum, laves__edge_winding_gradient(edge->a, edge->b, p));
   }
   return v3_scale(sum, 1 / four_pi);
-}
-
-/* By central differences, for rims so long that this is quicker. */
-static laves__vec3 gradient_by_differences(const laves__surface *s, laves__vec3 p, double step) {
-  const double h = 0.5 / step;
-  return v3(h * (excess(s, v3(p.x + step, p.y, p.z)) - excess(s, v3(p.x - step, p.y, p.z))),
-            h * (excess(s, v3(p.x, p.y + step, p.z)) - excess(s, v3(p.x, p.y - step, p.z))),
-            h * (excess(s, v3(p.x, p.y, p.z + step)) - excess(s, v3(p.x, p.y, p.z - step))));
 }
 
 bool laves__open_rim_is_far(const laves__surface *s, laves__vec3 p, double distance) {
@@ -186,9 +175,7 @@ double laves__open_cap_guess(const laves__surface *s, laves__vec3 p, double e, d
   if (!(e_abs < 0.5)) return INFINITY;
   const double rim = rim_distance(s, p, distance / fmax(2 * e_abs, 1e-3));
   if (2 * e_abs * rim >= distance) return INFINITY;
-  /* Differences must not reach over a triangle, where the number jumps. */
-  const laves__vec3 g = s->rim_tree.count <= LONG_RIM ? gradient_by_rim(s, p)
-                                                      : gradient_by_differences(s, p, difference_step * fmin(rim, distance));
+  const laves__vec3 g = s->rim_tree.count <= LONG_RIM ? gradient_by_rim(s, p) : laves__winding_gradient(&s->winding, p);
   const double slope = v3_norm(g);
   if (!(slope > 0)) return INFINITY;
   *uphill = v3_scale(g, 1 / slope);
@@ -197,28 +184,53 @@ double laves__open_cap_guess(const laves__surface *s, laves__vec3 p, double e, d
 
 double laves__open_excess(const laves__surface *s, laves__vec3 p) { return excess(s, p); }
 
+/* Places along a ray on both sides of the cap, and w - 1/2 there. */
+typedef struct bracket {
+  double low, high, at_low, at_high;
+} bracket;
+
+/* Chords between the ends of the bracket, and every third step its middle: the number is smooth but where expansions take turns
+ * and at triangles, where it jumps and chords don't help. An end that stays while the other moves twice counts half, or chords
+ * would creep up to the cap from one side [dowell1971]. */
+static double narrow_down(const laves__surface *s, laves__vec3 p, laves__vec3 direction, bracket b) {
+  int stays = 0; /* how often in turn the high end did, or minus the low one */
+  for (int i = 1; i <= CAP_STEPS && b.high - b.low > narrow * s->diagonal; i++) {
+    const bool halve = i % 3 == 0;
+    const double share = halve ? 0.5 : b.at_low / (b.at_low - b.at_high);
+    const double place = b.low + share * (b.high - b.low), e = excess(s, v3_mad(p, direction, place));
+    if (fabs(e) < on_cap) return place;
+    if ((e > 0) == (b.at_low > 0)) {
+      stays = stays > 0 ? stays + 1 : 1;
+      b.low = place;
+      b.at_low = e;
+      if (stays > 1) b.at_high *= 0.5;
+    } else {
+      stays = stays < 0 ? stays - 1 : -1;
+      b.high = place;
+      b.at_high = e;
+      if (stays < -1) b.at_low *= 0.5;
+    }
+  }
+  return 0.5 * (b.low + b.high);
+}
+
 bool laves__open_project(const laves__surface *s, laves__vec3 p, double e, double guess, laves__vec3 uphill, double reach,
                          laves__vec3 *foot, laves__vec3 *normal) {
   *normal = v3_scale(uphill, -1);
   *foot = p;
   if (fabs(e) < on_cap) return true;
   const laves__vec3 direction = e > 0 ? *normal : uphill;
-  double low = 0, high = guess;
-  int tries = 0;
-  while ((excess(s, v3_mad(p, direction, high)) > 0) == (e > 0)) {
-    low = high;
-    high *= 1.5;
-    if (++tries > EXPANSIONS || low > reach) return false;
+  bracket b = {0, guess, e, excess(s, v3_mad(p, direction, guess))};
+  for (int tries = 0; (b.at_high > 0) == (e > 0); tries++) {
+    if (tries == EXPANSIONS || b.high > reach) return false;
+    b.low = b.high;
+    b.at_low = b.at_high;
+    b.high *= 1.5;
+    b.at_high = excess(s, v3_mad(p, direction, b.high));
   }
-  for (int i = 0; i < BISECTIONS && high - low > 1e-12 * s->diagonal; i++) {
-    const double middle = 0.5 * (low + high);
-    if ((excess(s, v3_mad(p, direction, middle)) > 0) == (e > 0))
-      low = middle;
-    else
-      high = middle;
-  }
-  *foot = v3_mad(p, direction, 0.5 * (low + high));
-  return 0.5 * (low + high) <= reach;
+  const double place = narrow_down(s, p, direction, b);
+  *foot = v3_mad(p, direction, place);
+  return place <= reach;
 }
 
 /* The greatest |grad w| in the ball, bounded by the sum over the rim; INFINITY when the rim touches it. */
