@@ -114,13 +114,13 @@ static void need_ball(bench *b) {
   demand(laves_generate(b->context, b->domain, &options, &b->mesh, NULL, &error), &error);
 }
 
-/* The triangles of a fine sphere, each with the centre. */
+/* The triangles of a fine torus, each with the origin. */
 static void need_spikes(bench *b) {
   laves_error error = {0};
   if (b->spikes) return;
-  int frequency = 1;
-  while (20LL * frequency * frequency < b->tets / 3) frequency++;
-  shape s = shape_sphere(1, frequency);
+  int across = 3;
+  while (6LL * across * across < b->tets / 3) across++;
+  shape s = shape_torus(1, 0.3, 3 * across, across);
   double *points = calloc(s.point_count + 1, 3 * sizeof *points);
   int32_t *tets = malloc(s.triangle_count * 4 * sizeof *tets);
   if (!points || !tets) abort();
@@ -391,10 +391,10 @@ typedef struct job {
   laves_result (*run)(bench *b, laves_error *error);
 } job;
 
-#define LONG_LOOP "local s = 0 for i = 1, 100000000 do s = s + i end return sphere(1)"
+#define LONG_LOOP "(function() local s = 0 for i = 1, 100000000 do s = s + i end return sphere(1) end)()"
 #define MANY_HOLES                                                                                                   \
-  "local s = box(4, 4, 1) for i = 1, 12 do for j = 1, 12 do s = s - move(cylinder{r=0.08, h=2}, {i*0.3-2, j*0.3-2, " \
-  "0}) end end return s"
+  "(function() local s = box(4, 4, 1) for i = 1, 12 do for j = 1, 12 do s = s - move(cylinder{r=0.08, h=2}, {i*0.3-2, j*0.3-2, " \
+  "0}) end end return s end)()"
 
 static const job jobs[] = {
     {"read-vtu", "a.vtu", prepare_ball_file, read_mesh},
@@ -439,7 +439,7 @@ static const job jobs[] = {
     {"mesh-thickness", "torus(1, 0.3)|tets=0.1 thickness=8", prepare_nothing, make_mesh},
     {"mesh-growth", "sphere(1)|tets=0.2 growth=1", prepare_nothing, make_mesh},
     {"mesh-graded", "sphere(1)|tets=1 growth=0.05", prepare_nothing, make_mesh},
-    {"mesh-distance", "torus(1, 0.3)|size=0.1 distance=1e-4", prepare_nothing, make_mesh},
+    {"mesh-distance", "torus(1, 0.3)|size=0.1 distance=1e-3", prepare_nothing, make_mesh},
     {"mesh-surface", "demo/inputs/dragon.obj|tets=0.1", prepare_nothing, make_mesh},
     {"mesh-surface-sizes", "demo/inputs/dragon.obj|tets=0.1 curvature=20 thickness=3", prepare_nothing, make_mesh},
     {"mesh-soup", "demo/inputs/soup.stl|tets=0.02", prepare_nothing, make_mesh},

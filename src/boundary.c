@@ -99,6 +99,7 @@ static laves_result conform(laves__run *r) {
   const laves_result result = snap(r);
   if (result != LAVES_OK || !laves__may_mend(r)) return result;
   r->rough = is_rough(r);
+  if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
   return laves__filled_share(r) < least_snapped ? laves__stuff_everything(r) : result;
 }
 

@@ -46,12 +46,19 @@ laves_result laves__fail(laves_error *error, laves_result result, const char *fo
 /* The standard sentence for a failed allocation; tells the limit where there is one. */
 laves_result laves__fail_memory(const laves_context *context, laves_error *error);
 laves_result laves__fail_cancelled(laves_error *error);
+/* For a step that was cut short either by a cancel or, when there was none, for want of memory. */
+laves_result laves__fail_short(const laves_context *context, laves_error *error);
 
 /* ---- progress ---- */
 
 /* Reports and asks: true when the caller wants to cancel; once cancelled it stays so until laves__progress_reset().
  * Call only from the thread that entered the library. `phase` is a static string, fraction in 0..1. */
 bool laves__cancelled(laves_context *context, const char *phase, double fraction);
+/* The same for item `index` of `count` of a loop whose turns take a microsecond at most: asks at some of them only. */
+static inline bool laves__cancelled_at(laves_context *context, const char *phase, size_t index, size_t count) {
+  enum { TURNS = 1 << 14 };
+  return index % TURNS == 0 && laves__cancelled(context, phase, (double)index / (double)count);
+}
 /* Whether a cancel has been asked for; callable from any thread. */
 bool laves__is_cancelled(const laves_context *context);
 /* Forget an earlier cancel; at the start of each public call. */
@@ -59,10 +66,11 @@ void laves__progress_reset(laves_context *context);
 
 /* ---- threads ---- */
 
-/* Runs fn over [0, count) in blocks of at least min_block, in parallel. Which worker (0 .. laves__workers()-1) gets which
- * block may vary from run to run, so results must be written to places that depend on the index alone.
- * Between blocks the calling thread reports progress under `phase` (NULL: silently); after a cancel the remaining blocks
- * are skipped and the function returns false. */
+/* Runs fn over [0, count) in blocks of at least min_block, in parallel. Where blocks begin and which worker
+ * (0 .. laves__workers()-1) gets which may vary from run to run, so results must be written to places that depend on the index
+ * alone. Between blocks the calling thread reports progress under `phase` (NULL: silently); after a cancel the remaining blocks
+ * are skipped and the function returns false. Blocks are made to take some milliseconds, so that a cancel is soon heard where
+ * min_block items take no longer. */
 typedef void laves__range_fn(void *user, size_t begin, size_t end, int worker);
 bool laves__parallel_for(laves_context *context, const char *phase, size_t count, size_t min_block, laves__range_fn *fn,
                          void *user);

@@ -63,3 +63,7 @@ double laves__cpu_seconds(void) {
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
+
+laves_result laves__fail_short(const laves_context *context, laves_error *error) {
+  return laves__is_cancelled(context) ? laves__fail_cancelled(error) : laves__fail_memory(context, error);
+}

@@ -196,6 +196,7 @@ static void collect(const filling *f, size_t leaf, leaf_tets *list) {
 static size_t count_midpoints(const laves__sites *sites, uint64_t *keys) {
   size_t count = 0;
   for (size_t site = 0; site < sites->site_count; site++) {
+    if (laves__cancelled_at(sites->context, "background", site, sites->site_count)) return 0;
     if (!sites->gone[site]) continue;
     const laves__site_view view = laves__site_look(sites, site);
     if (view.colour != 2) continue;
@@ -283,7 +284,7 @@ static laves_result make_vertices(filling *f, laves_error *error) {
   f->corner = laves__alloc(context, leaves, sizeof *f->corner);
   f->centre = laves__alloc(context, leaves, sizeof *f->centre);
   f->first = laves__alloc_zeroed(context, leaves + 1, sizeof *f->first);
-  if (!f->corner || !f->centre || !f->first || !list_vertices(f)) return laves__fail_memory(context, error);
+  if (!f->corner || !f->centre || !f->first || !list_vertices(f)) return laves__fail_short(context, error);
   g->context = context;
   g->vertex_count = f->table.count;
   g->position = laves__alloc(context, g->vertex_count, sizeof *g->position);
