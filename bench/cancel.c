@@ -439,7 +439,7 @@ static const job jobs[] = {
     {"mesh-thickness", "torus(1, 0.3)|tets=0.1 thickness=8", prepare_nothing, make_mesh},
     {"mesh-growth", "sphere(1)|tets=0.2 growth=1", prepare_nothing, make_mesh},
     {"mesh-graded", "sphere(1)|tets=1 growth=0.05", prepare_nothing, make_mesh},
-    {"mesh-distance", "torus(1, 0.3)|size=0.1 distance=1e-3", prepare_nothing, make_mesh},
+    {"mesh-distance", "torus(1, 0.3)|size=0.2 distance=1e-2", prepare_nothing, make_mesh},
     {"mesh-surface", "demo/inputs/dragon.obj|tets=0.1", prepare_nothing, make_mesh},
     {"mesh-surface-sizes", "demo/inputs/dragon.obj|tets=0.1 curvature=20 thickness=3", prepare_nothing, make_mesh},
     {"mesh-soup", "demo/inputs/soup.stl|tets=0.02", prepare_nothing, make_mesh},

@@ -48,7 +48,8 @@ typedef struct settings {
   double guarantee; /* degrees */
   laves_format format;
   int64_t compress, threads, list;
-  int64_t memory; /* bytes; 0: no limit */
+  int64_t memory; /* bytes; 0: what the machine has */
+  double timeout; /* seconds; 0: no limit */
   option_numbers cells;
   double grading, min_size, max_size; /* sizes 0: not given */
   double curvature_elements, thickness_elements, feature_elements, max_distance, relative_distance, interior_growth;

@@ -23,6 +23,7 @@ static laves_result make_graded_background(laves__run *r) {
 
 static laves_result make_background(laves__run *r) {
   laves__stage_begin(r);
+  laves__layer_free(&r->layer);
   laves__lattice_free(&r->lattice);
   const laves_result result = r->sizes ? make_graded_background(r)
                                        : laves__lattice_create(r->context, laves__frame_bounds(&r->frame), &r->lattice, r->error);

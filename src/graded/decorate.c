@@ -23,7 +23,7 @@ static laves_result list_corners(const laves__octree *tree, laves__sites *sites,
   for (size_t i = 0; i < tree->leaf_count; i++)
     for (int k = 0; k < 8; k++) keys[8 * i + (size_t)k] = corner_key(&tree->node[tree->leaf[i]], k);
   const bool done = laves__key_table_make(tree->context, keys, count, count, &sites->corner);
-  return done ? LAVES_OK : laves__fail_short(tree->context, error);
+  return done ? LAVES_OK : laves__fail_memory(tree->context, error);
 }
 
 laves__site_view laves__site_look(const laves__sites *sites, size_t site) {
@@ -106,7 +106,7 @@ static laves_result keep_lonely(laves__sites *sites, laves_error *error) {
     for (int bond = 0; memory && bond < 4; bond++) list[count++] = laves__bond_end(sites, &view, site, bond);
   }
   laves__free(sites->context, list, capacity, sizeof *list);
-  return memory && !cancelled ? LAVES_OK : laves__fail_short(sites->context, error);
+  return memory && !cancelled ? LAVES_OK : laves__fail_memory(sites->context, error);
 }
 
 laves_result laves__sites_make(const laves__octree *tree, laves__sites *sites, laves_error *error) {

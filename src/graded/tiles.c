@@ -284,7 +284,7 @@ static laves_result make_vertices(filling *f, laves_error *error) {
   f->corner = laves__alloc(context, leaves, sizeof *f->corner);
   f->centre = laves__alloc(context, leaves, sizeof *f->centre);
   f->first = laves__alloc_zeroed(context, leaves + 1, sizeof *f->first);
-  if (!f->corner || !f->centre || !f->first || !list_vertices(f)) return laves__fail_short(context, error);
+  if (!f->corner || !f->centre || !f->first || !list_vertices(f)) return laves__fail_memory(context, error);
   g->context = context;
   g->vertex_count = f->table.count;
   g->position = laves__alloc(context, g->vertex_count, sizeof *g->position);

@@ -287,7 +287,7 @@ laves_result laves__mesh_input_finish(laves__mesh_input *input, laves_mesh **mes
   }
   if (!enough) {
     laves_mesh_free(made);
-    return laves__fail_short(input->context, error);
+    return laves__fail_memory(input->context, error);
   }
   *mesh = made;
   return LAVES_OK;
