@@ -28,9 +28,9 @@ static laves__box3 box_of(const laves__vec3 *points, size_t count) {
   return b;
 }
 
-static laves__box3 used_box(const laves__surface_input *input) {
+static laves__box3 used_box(laves_context *context, const laves__surface_input *input) {
   laves__box3 b = box3_empty();
-  for (size_t f = 0; f < input->triangle_count; f++)
+  for (size_t f = 0; f < input->triangle_count && !laves__cancelled_at(context, "surface", f, input->triangle_count); f++)
     for (int i = 0; i < 3; i++) b = box3_add(b, input->points[input->triangles[f][i]]);
   return b;
 }
@@ -53,7 +53,7 @@ static bool reorder(laves__surface *s, const uint32_t *order) {
     laves__free(s->context, sources, s->face_capacity, sizeof *sources);
     return false;
   }
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count && !laves__cancelled_at(s->context, "surface", i, count); i++) {
     memcpy(faces[i], s->faces[order[i]], sizeof *faces);
     if (tags) tags[i] = s->tags[order[i]];
     sources[i] = s->sources[order[i]];
@@ -64,7 +64,7 @@ static bool reorder(laves__surface *s, const uint32_t *order) {
   s->faces = faces;
   s->tags = tags;
   s->sources = sources;
-  return true;
+  return !laves__is_cancelled(s->context);
 }
 
 /* Points change to the order in which faces first use them, so that what is near in space is near in memory. */
@@ -347,8 +347,12 @@ static void fill_domain(laves__surface *s, laves__surface_input *input, laves__v
 laves_result laves__surface_build(laves_context *context, laves__surface_input *input, laves_domain *domain, laves_error *error) {
   laves_result result = LAVES_OK;
   laves__surface *s = NULL;
-  const laves__box3 box = used_box(input);
+  const laves__box3 box = used_box(context, input);
   const double diagonal = box3_diagonal(box);
+  if (laves__is_cancelled(context)) {
+    result = laves__fail_cancelled(error);
+    goto clean_up;
+  }
   if (input->triangle_count == 0) {
     result = laves__fail(error, LAVES_ERROR_INPUT, "the surface has no triangles");
     goto clean_up;

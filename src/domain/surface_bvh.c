@@ -68,8 +68,9 @@ static box items_box(const item *items, uint32_t begin, uint32_t end) {
   return b;
 }
 
-static void make_items(const laves__bvh *bvh, const laves__vec3 *points, const uint32_t (*faces)[3], size_t count, item *items) {
+static void make_items(laves_context *context, const laves__bvh *bvh, const laves__vec3 *points, const uint32_t (*faces)[3], size_t count, item *items) {
   for (size_t f = 0; f < count; f++) {
+    if (laves__cancelled_at(context, "surface", f, count)) return;
     box b = box_empty();
     for (int i = 0; i < 3; i++) {
       const laves__vec3 p = points[faces[f][i]];
@@ -251,7 +252,8 @@ bool laves__bvh_build(laves_context *context, const laves__vec3 *points, const u
   item *items = laves__alloc(context, face_count, sizeof *items);
   laves__triangle *triangles = laves__alloc(context, face_count, sizeof *triangles);
   if (!items || !triangles) goto clean_up;
-  make_items(bvh, points, faces, face_count, items);
+  make_items(context, bvh, points, faces, face_count, items);
+  if (laves__is_cancelled(context)) goto clean_up;
   builder b = {context, bvh, items};
   const range whole = {0, (uint32_t)face_count, items_box(items, 0, (uint32_t)face_count)};
   if (make_node(&b, whole, 0) == LAVES__NONE) goto clean_up;

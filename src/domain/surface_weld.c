@@ -55,10 +55,14 @@ static bool find_equal_points(laves__surface *s, const laves__vec3 *points, cons
   return !cancelled;
 }
 
-static void mark_used(const laves__surface_input *input, bool *used) {
+/* False when cancelled. */
+static bool mark_used(laves_context *context, const laves__surface_input *input, bool *used) {
   memset(used, 0, input->point_count * sizeof *used);
-  for (size_t f = 0; f < input->triangle_count; f++)
+  for (size_t f = 0; f < input->triangle_count; f++) {
+    if (laves__cancelled_at(context, "surface", f, input->triangle_count)) return false;
     for (int i = 0; i < 3; i++) used[input->triangles[f][i]] = true;
+  }
+  return true;
 }
 
 /* Gives the points that are kept their new numbers, in `first` itself, and stores them. */
@@ -66,6 +70,7 @@ static void number_points(laves__surface *s, const laves__vec3 *points, const bo
                           laves_domain_info *info) {
   s->point_count = 0;
   for (size_t i = 0; i < count; i++) {
+    if (laves__cancelled_at(s->context, "surface", i, count)) return;
     if (!used[i]) {
       note(info, LAVES_DEFECT_UNUSED_POINT, points[i]);
     } else if (first[i] == i) {
@@ -196,9 +201,11 @@ bool laves__surface_weld(laves__surface *s, const laves__surface_input *input, l
     s->tags = laves__alloc(context, input->triangle_count, sizeof *s->tags);
     if (!s->tags) goto clean_up;
   }
-  /* Adding zero turns -0 into 0. */
-  for (size_t i = 0; i < count; i++) points[i] = v3_add(v3_sub(input->points[i], origin), v3(0, 0, 0));
-  mark_used(input, used);
+  for (size_t i = 0; i < count; i++) {
+    if (laves__cancelled_at(context, "surface", i, count)) goto clean_up;
+    points[i] = v3_add(v3_sub(input->points[i], origin), v3(0, 0, 0)); /* adding zero turns -0 into 0 */
+  }
+  if (!mark_used(context, input, used)) goto clean_up;
   if (!find_equal_points(s, points, used, count, first, info)) goto clean_up;
   number_points(s, points, used, count, first, info);
   copy_faces(s, input, first, info);
