@@ -391,7 +391,7 @@ typedef struct job {
   laves_result (*run)(bench *b, laves_error *error);
 } job;
 
-#define LONG_LOOP "(function() local s = 0 for i = 1, 100000000 do s = s + i end return sphere(1) end)()"
+#define LONG_LOOP "(function() local s = 0 for i = 1, 9000000 do s = s + i end return sphere(1) end)()"
 #define MANY_HOLES                                                                                                   \
   "(function() local s = box(4, 4, 1) for i = 1, 12 do for j = 1, 12 do s = s - move(cylinder{r=0.08, h=2}, {i*0.3-2, j*0.3-2, " \
   "0}) end end return s end)()"
