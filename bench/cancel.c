@@ -3,11 +3,11 @@
  *
  *   cancel [--threads N] [--tets N] [--cuts N] [--stacks SECONDS] [--list] [JOB...]
  *
- * JOB: the beginning of a name; none: all. Times are CPU seconds, which other programs on the machine do not disturb, where there is
- * one thread (the default), else those of the clock on the wall. Columns: seconds of the whole job; calls of the callback; the
+ * JOB: the beginning of a name; none: all. Times are CPU seconds, which other programs on the machine do not disturb, where there
+ * is one thread (the default), else those of the clock on the wall. Columns: seconds of the whole job; calls of the callback; the
  * longest time between two of them, and the phases on both sides of it; the longest time from the wish to cancel to the return.
- * Ends with 1 when a job fails, keeps memory, or takes more than 0.2 seconds to end. --stacks prints where the program is when it has
- * been silent so long. */
+ * Ends with 1 when a job fails, keeps memory, or takes more than 0.2 seconds to end. --stacks prints where the program is when it
+ * has been silent so long. */
 #include <execinfo.h>
 #include <laves/laves.h>
 #include <signal.h>
@@ -369,9 +369,8 @@ static laves_result certify(bench *b, laves_error *error) {
 
 static laves_result copy_arrays(bench *b, laves_error *error) {
   laves_mesh *mesh = NULL;
-  const laves_result result =
-      laves_mesh_from_arrays(b->context, laves_mesh_points(b->mesh), laves_mesh_vertex_count(b->mesh), laves_mesh_tets(b->mesh),
-                             laves_mesh_tet_count(b->mesh), NULL, &mesh, error);
+  const laves_result result = laves_mesh_from_arrays(b->context, laves_mesh_points(b->mesh), laves_mesh_vertex_count(b->mesh),
+                                                     laves_mesh_tets(b->mesh), laves_mesh_tet_count(b->mesh), NULL, &mesh, error);
   laves_mesh_free(mesh);
   return result;
 }
@@ -392,7 +391,7 @@ typedef struct job {
 } job;
 
 #define LONG_LOOP "(function() local s = 0 for i = 1, 9000000 do s = s + i end return sphere(1) end)()"
-#define MANY_HOLES                                                                                                   \
+#define MANY_HOLES                                                                                                               \
   "(function() local s = box(4, 4, 1) for i = 1, 12 do for j = 1, 12 do s = s - move(cylinder{r=0.08, h=2}, {i*0.3-2, j*0.3-2, " \
   "0}) end end return s end)()"
 

@@ -39,9 +39,11 @@ laves_result session_fail(session *run, laves_result result, const char *format,
 static laves_result fail_timeout(session *run) {
   const bool sized = run->given->size > 0 || run->given->relative_size > 0 || run->given->tets > 0 || run->given->vertices > 0;
   char phase[80] = "before the work began";
-  if (run->bar.phase) snprintf(phase, sizeof phase, "in the phase '%.40s', %.0f %% of it done", run->bar.phase, 100 * run->bar.fraction);
-  return session_fail(run, LAVES_ERROR_TIMEOUT, "the %g s of --timeout were over %s; nothing half-written is left; allow more time%s",
-                      run->given->timeout, phase, sized ? " or ask for fewer, larger tetrahedra" : "");
+  if (run->bar.phase)
+    snprintf(phase, sizeof phase, "in the phase '%.40s', %.0f %% of it done", run->bar.phase, 100 * run->bar.fraction);
+  return session_fail(run, LAVES_ERROR_TIMEOUT,
+                      "the %g s of --timeout were over %s; nothing half-written is left; allow more time%s", run->given->timeout,
+                      phase, sized ? " or ask for fewer, larger tetrahedra" : "");
 }
 
 laves_result session_settle(session *run, laves_result result) {

@@ -14,10 +14,13 @@
 static const double cell_side = LAVES__C15_PERIOD / LAVES__C15_MEAN_EDGE;
 enum { CORRECTIONS = 8 };
 
-/* Bytes of the context at the peak, per tet and per size^2 of surface, measured on balls, a plate, a torus, surfaces and machine
- * parts of 0.2 to 8 million tets: while the arrays of the mesh are filled and the layer still stands, and while it is certified. */
-static const double bytes_at_start = 2e6, made_per_tet = 22, made_per_area = 1950, certified_per_tet = 100,
-                    certified_per_area = 770, certified_per_varying_tet = 130;
+/* Bytes of the context, measured on balls, a plate, a torus, a gyroid, surfaces and machine parts of 0.05 to 8 million tets.
+ * While the mesh is filled and the layer still stands: per tet, and per tet of the layer, which takes up so many for each size^2
+ * of surface. */
+static const double bytes_at_start = 2e6, made_per_tet = 22, made_per_layer_tet = 121, layer_per_area = 16.1;
+/* While it is certified: faces are matched in ranges, so that many tets take less each; samples go with the surface. */
+static const double certified_per_tet = 90, matched_at_most = 160e6, certified_beyond = 25, certified_per_area = 2600;
+static const double certified_per_varying_tet = 200;
 
 typedef struct estimating {
   laves_context *context;
@@ -50,8 +53,9 @@ static void count_uniform(double volume, double area, double size, laves_expecta
   out->size = size;
   out->tets = LAVES__C15_TETS * cells;
   out->vertices = LAVES__C15_SITES * cells;
-  out->peak_bytes = bytes_at_start + made_per_tet * out->tets + made_per_area * places;
-  out->certify_bytes = bytes_at_start + certified_per_tet * out->tets + certified_per_area * places;
+  out->peak_bytes = bytes_at_start + made_per_tet * out->tets + made_per_layer_tet * fmin(out->tets, layer_per_area * places);
+  out->certify_bytes = bytes_at_start + certified_per_area * places +
+                       fmin(certified_per_tet * out->tets, matched_at_most + certified_beyond * out->tets);
 }
 
 /* The least size, to two digits, whose mesh fits into `room`. */

@@ -71,8 +71,8 @@ static laves_result improve(laves__run *r, bool again) {
                              .held_max = held ? r->guarantee->max_dihedral - held_slack : 180,
                              .again = again,
                              .brief = r->rough};
-  const laves_result result = laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error)
-                                                              : laves__improve(&r->frame, &aim, &r->layer, r->error);
+  const laves_result result =
+      laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : laves__improve(&r->frame, &aim, &r->layer, r->error);
   laves__stage_end(r, "improve");
   return result;
 }

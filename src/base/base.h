@@ -39,18 +39,19 @@ void laves__free(laves_context *context, void *block, size_t count, size_t size)
  * `block` is the address of the item pointer. */
 bool laves__grow(laves_context *context, void *block, size_t *capacity, size_t needed, size_t size);
 
-/* Whether so many bytes more can be within the limit: true where there is none. The number is an estimate that may be a quarter too
- * large, so what is refused could not have been. */
+/* Whether so many bytes more can be within the limit: true where there is none. The number is an estimate that may be a quarter
+ * too large, so what is refused could not have been. */
 bool laves__may_fit(const laves_context *context, double bytes);
-/* So many bytes fit beside what is held, even if they are an estimate that is a quarter too small. INFINITY: there is no limit. */
+/* So many bytes fit beside what is held, even if they are an estimate that is a quarter too small. INFINITY: there is no limit.
+ */
 double laves__room(const laves_context *context);
 
 /* ---- errors ---- */
 
 /* Fills error (may be NULL) with result and a printf sentence, and returns result. */
 laves_result laves__fail(laves_error *error, laves_result result, const char *format, ...) __attribute__((format(printf, 3, 4)));
-/* The standard sentence for a step that could not be completed, when all that is known is that memory was short or a cancel cut it
- * off: after a cancel the result is that; else it is the memory, and the limit is told where there is one. */
+/* The standard sentence for a step that could not be completed, when all that is known is that memory was short or a cancel cut
+ * it off: after a cancel the result is that; else it is the memory, and the limit is told where there is one. */
 laves_result laves__fail_memory(const laves_context *context, laves_error *error);
 laves_result laves__fail_cancelled(laves_error *error);
 /* That `bytes` more, an estimate, are beyond the limit: for `what`, a noun, and what would fit, a clause. */

@@ -3,8 +3,8 @@
  * Blocks are handed out by an atomic counter, so a slow block does not hold the others up; which worker gets which block
  * differs from run to run, which is why bodies may write only to places that depend on the index. Each worker begins with the
  * smallest blocks and makes its next ones larger or smaller by the time that they take: large enough to cost nothing, small
- * enough to hear of a cancel soon. Worker 0 is the calling thread and the only one that reports progress. OpenMP supplies the threads; the thread sanitizer cannot see into
- * GNU OpenMP, so builds with LAVES_PTHREADS start POSIX threads instead. */
+ * enough to hear of a cancel soon. Worker 0 is the calling thread and the only one that reports progress. OpenMP supplies the
+ * threads; the thread sanitizer cannot see into GNU OpenMP, so builds with LAVES_PTHREADS start POSIX threads instead. */
 #include <stdatomic.h>
 
 #include "base/base.h"

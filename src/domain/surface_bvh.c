@@ -68,7 +68,8 @@ static box items_box(const item *items, uint32_t begin, uint32_t end) {
   return b;
 }
 
-static void make_items(laves_context *context, const laves__bvh *bvh, const laves__vec3 *points, const uint32_t (*faces)[3], size_t count, item *items) {
+static void make_items(laves_context *context, const laves__bvh *bvh, const laves__vec3 *points, const uint32_t (*faces)[3],
+                       size_t count, item *items) {
   for (size_t f = 0; f < count; f++) {
     if (laves__cancelled_at(context, "surface", f, count)) return;
     box b = box_empty();

@@ -22,8 +22,7 @@ static laves_result fail_errno(laves_error *error, const char *path, const char 
 }
 
 /* Fills `bytes` from the file, which must hold `length` of them still, piece by piece: a disk may be slow. */
-static laves_result read_all(laves_context *context, int file, const char *path, char *bytes, size_t length,
-                             laves_error *error) {
+static laves_result read_all(laves_context *context, int file, const char *path, char *bytes, size_t length, laves_error *error) {
   for (size_t done = 0; done < length;) {
     if (laves__cancelled(context, "read", 0)) return laves__fail_cancelled(error);
     const ssize_t got = read(file, bytes + done, length - done < PIECE_BYTES ? length - done : PIECE_BYTES);

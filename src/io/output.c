@@ -1,10 +1,10 @@
 /* A file being written: it appears whole or not at all.
  *
- * Where the file system can (Linux's O_TMPFILE) the temporary file has no name until it is complete, so that nothing of it is left
- * when the program is killed. Else, and when it is published, it has a short name of its own (not the target's with something added,
- * which could get too long), which no other file has, so two programs writing to one folder do not meet. A target that is a symbolic link is followed, and an
- * existing target's permissions are kept. Nothing is synced to the disk: a crash of the machine is not what "whole or not at
- * all" is about.
+ * Where the file system can (Linux's O_TMPFILE) the temporary file has no name until it is complete, so that nothing of it is
+ * left when the program is killed. Else, and when it is published, it has a short name of its own (not the target's with
+ * something added, which could get too long), which no other file has, so two programs writing to one folder do not meet. A
+ * target that is a symbolic link is followed, and an existing target's permissions are kept. Nothing is synced to the disk: a
+ * crash of the machine is not what "whole or not at all" is about.
  *
  * Items are formatted by all threads in waves: every block of a wave has a slot of its own in one scratch block, and the
  * slots are written in order when the wave is done, so the bytes do not depend on the number of threads. */

@@ -2,9 +2,10 @@
  *
  *   laves__output_open -> laves__output_bytes, _items ... -> laves__output_complete -> laves__output_publish
  *
- * Bytes go to a temporary file in the target's folder, without a name where that can be, which publishing renames to the target. Targets that are not regular
- * files (devices, pipes) and open descriptors (/dev/stdout) are written directly. The first failure sticks: later calls do
- * nothing and the last one returns it, so writers need not look in between. laves__output_discard() ends it at any point. */
+ * Bytes go to a temporary file in the target's folder, without a name where that can be, which publishing renames to the target.
+ * Targets that are not regular files (devices, pipes) and open descriptors (/dev/stdout) are written directly. The first failure
+ * sticks: later calls do nothing and the last one returns it, so writers need not look in between. laves__output_discard() ends
+ * it at any point. */
 #ifndef LAVES_IO_OUTPUT_H
 #define LAVES_IO_OUTPUT_H
 

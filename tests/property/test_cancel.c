@@ -1,5 +1,5 @@
-/* Calls that are cancelled at one callback or another: each ends with LAVES_ERROR_CANCELLED, keeps no memory, leaves no file, and works
- * when it is called again. How soon it ends is measured by bench/cancel.c. */
+/* Calls that are cancelled at one callback or another: each ends with LAVES_ERROR_CANCELLED, keeps no memory, leaves no file, and
+ * works when it is called again. How soon it ends is measured by bench/cancel.c. */
 #include <dirent.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,7 +14,7 @@
 #include "fixtures/size_files.h"
 #include "laves/laves.h"
 
-enum { CUTS = 8 };
+enum { CUTS = 6 };
 
 /* Counts the calls; false from the `last` on. */
 typedef struct counter {
@@ -86,9 +86,9 @@ static int set_up(void **state) {
   b.context = laves_context_create(&options);
   strcpy(b.folder, "/tmp/laves-cancel-XXXXXX");
   assert_non_null(mkdtemp(b.folder));
-  assert_int_equal(laves_domain_from_expression(b.context, "sphere(1) - box(1, 1, 3)", &b.domain, NULL), LAVES_OK);
+  assert_int_equal(laves_domain_from_expression(b.context, "box(2, 2, 2)", &b.domain, NULL), LAVES_OK);
   laves_options wish = laves_options_default();
-  wish.tet_target = 5000;
+  wish.tet_target = 3000;
   assert_int_equal(laves_generate(b.context, b.domain, &wish, &b.mesh, NULL, NULL), LAVES_OK);
   *state = &b;
   return 0;
@@ -116,7 +116,7 @@ static void use_options(const char *words, laves_options *options) {
 static laves_result generate(bench *b, laves_error *error) {
   laves_options options = laves_options_default();
   laves_mesh *mesh = NULL;
-  options.tet_target = 2000;
+  options.tet_target = 1000;
   use_options(b->argument, &options);
   const laves_result result = laves_generate(b->context, b->domain, &options, &mesh, NULL, error);
   if (result != LAVES_OK && result != LAVES_TARGET_MISSED) assert_null(mesh);
@@ -258,9 +258,12 @@ static void scripts(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup_teardown(meshes, set_up, tear_down),      cmocka_unit_test_setup_teardown(estimates, set_up, tear_down),
-      cmocka_unit_test_setup_teardown(checks, set_up, tear_down),      cmocka_unit_test_setup_teardown(files, set_up, tear_down),
-      cmocka_unit_test_setup_teardown(backgrounds, set_up, tear_down), cmocka_unit_test_setup_teardown(scripts, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(meshes, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(estimates, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(checks, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(files, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(backgrounds, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(scripts, set_up, tear_down),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
