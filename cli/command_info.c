@@ -99,7 +99,7 @@ static laves_result info_steps(session *run, info_run *all) {
   if (result == LAVES_OK) result = input_open(run, run->given->input, &all->in);
   if (result != LAVES_OK) return result;
   all->has_cost = estimate_make(run, &all->in, &all->cost);
-  if (all->has_cost) result = estimate_varying(run, &all->in, all->sizing, all->features, &all->cost);
+  if (all->has_cost) result = estimate_expect(run, &all->in, all->sizing, all->features, &all->cost);
   if (result != LAVES_OK) return result;
   const double start = progress_now();
   all->walls.count = laves_domain_thin_places(all->in.domain, all->walls.place, THIN_CAPACITY);

@@ -210,8 +210,12 @@ const option option_rows[] = {
 
     {"threads", 0, MESH | CHECK | INFO, IN_RUN, OPTION_COUNT, "N", NULL, false, 1, 4096, "one per core", MEMBER(threads), 0,
      "threads to use; the mesh never depends on it"},
-    {"memory", 0, ALL, IN_RUN, OPTION_BYTES, "SIZE", "bytes", false, 1, 1e18, "no limit", MEMBER(memory), 0,
-     "most memory to hold, such as 500M or 2G (powers of 1024); exit code 4 when it is not enough"},
+    {"memory", 0, ALL, IN_RUN, OPTION_BYTES, "SIZE", "bytes", false, 1, 1e18, "what the machine has", MEMBER(memory), 0,
+     "most memory to hold, such as 500M or 2G (powers of 1024); exit code 4 when it is not enough, before meshing begins where "
+     "that can "
+     "be foreseen"},
+    {"timeout", 0, ALL, IN_RUN, OPTION_REAL, "SECONDS", "seconds", true, 0, 1e9, "no limit", MEMBER(timeout), 0,
+     "most time to take; the run then ends as by Ctrl-C, with exit code 124 and nothing half-written"},
     {"quiet", 'q', ALL, IN_RUN, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(quiet), 0, "say nothing but errors"},
     {"verbose", 'v', ALL, IN_RUN, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(verbose), 0,
      "say more: time of each stage, all defects of the input"},

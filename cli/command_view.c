@@ -137,7 +137,7 @@ static laves_result draw(session *run, const laves_mesh *mesh, const scene_optio
              text_plural(&tets, shown.kept_tets, "tet"), how->width, how->height, scale);
   }
   scene_free(&shown);
-  return result;
+  return result == LAVES_OK ? result : session_settle(run, result);
 }
 
 static laves_result view_steps(session *run, laves_mesh **mesh) {

@@ -22,11 +22,8 @@ static const double tets_in_volume = 8.5815, vertices_in_volume = 1.5144;
 static const double tets_on_area = -0.15, vertices_on_area = 0.68;
 static const double default_tets = 50e3;
 
-/* Costs measured in the same runs. The peak is reached either when the boundary layer is improved or when the arrays of the
- * mesh are filled. */
-static const double bytes_at_start = 4e6, bytes_per_triangle = 300, bytes_per_tet = 55, bytes_per_area = 2500;
-/* Where sizes vary, on spheres of 50 to 500 thousand tets, most of them near the surface. */
-static const double bytes_per_varying_tet = 350, seconds_per_varying_tet = 8e-6;
+/* Costs measured in the same runs; where sizes vary, on spheres of 50 to 500 thousand tets, most of them near the surface. */
+static const double seconds_per_varying_tet = 8e-6;
 static const double seconds_per_tet = 1e-7, seconds_per_area = 6.5e-5;
 
 /* Samples are taken until there are enough or the time is up: a soup of triangles answers slowly. */
@@ -130,30 +127,30 @@ bool estimate_make(session *run, const input *in, estimate *result) {
   result->tets = count_at(size, result->volume, result->area, tets_in_volume, tets_on_area);
   result->vertices = count_at(size, result->volume, result->area, vertices_in_volume, vertices_on_area);
   const double tiles_on_area = result->area / (size * size);
-  result->bytes = bytes_at_start + bytes_per_triangle * (double)in->info.triangle_count +
-                  fmax(bytes_per_tet * result->tets, bytes_per_area * tiles_on_area);
   result->cpu_seconds = seconds_per_tet * result->tets + seconds_per_area * tiles_on_area;
   return true;
 }
 
-laves_result estimate_varying(session *run, const input *in, const laves_sizing *sizing, const laves_features *features,
-                              estimate *result) {
-  if (!sizing_is_asked(run->given)) return LAVES_OK;
+laves_result estimate_expect(session *run, const input *in, const laves_sizing *sizing, const laves_features *features,
+                             estimate *result) {
+  const bool varying = sizing_is_asked(run->given);
   laves_options options = laves_options_default();
   laves_expectation expected;
-  options.size = run->given->size;
-  options.relative_size = run->given->relative_size;
-  options.tet_target = run->given->tets;
-  options.vertex_target = run->given->vertices;
+  options.size = varying ? run->given->size : result->size;
+  options.relative_size = varying ? run->given->relative_size : 0;
+  options.tet_target = varying ? run->given->tets : 0;
+  options.vertex_target = varying ? run->given->vertices : 0;
   sizing_options(run->given, sizing, &in->info, &options);
   features_options(run->given, features, &options);
   const laves_result outcome = laves_estimate(run->context, in->domain, &options, &expected, &run->error);
   if (outcome != LAVES_OK) return session_settle(run, outcome);
-  result->size = expected.size;
-  result->tets = expected.tets;
-  result->vertices = expected.vertices;
-  result->bytes = bytes_at_start + bytes_per_triangle * (double)in->info.triangle_count + bytes_per_varying_tet * expected.tets;
-  result->cpu_seconds = seconds_per_varying_tet * expected.tets;
+  result->bytes = fmax(expected.peak_bytes, expected.certify_bytes);
+  if (varying) {
+    result->size = expected.size;
+    result->tets = expected.tets;
+    result->vertices = expected.vertices;
+    result->cpu_seconds = seconds_per_varying_tet * expected.tets;
+  }
   return session_settle(run, outcome);
 }
 

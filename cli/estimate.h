@@ -16,9 +16,9 @@ typedef struct estimate {
  * @return false when the domain is empty as far as the samples tell */
 bool estimate_make(session *run, const input *in, estimate *result);
 
-/* Where sizes vary, what the library expects in the place of counts and costs. */
-laves_result estimate_varying(session *run, const input *in, const laves_sizing *sizing, const laves_features *features,
-                              estimate *result);
+/* What the library expects: the memory; and where sizes vary, sizes, counts and costs in the place of those above. */
+laves_result estimate_expect(session *run, const input *in, const laves_sizing *sizing, const laves_features *features,
+                             estimate *result);
 
 void estimate_write_json(json *out, const estimate *result);
 

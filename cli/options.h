@@ -9,7 +9,7 @@
 
 #include "laves/laves.h"
 
-enum { OUTPUT_CAPACITY = 8, TEXTS_CAPACITY = 64, OPTION_CAPACITY = 64 /* rows of the table */ };
+enum { OUTPUT_CAPACITY = 8, TEXTS_CAPACITY = 64, OPTION_CAPACITY = 96 /* rows of the table */ };
 
 /* A list of values of one option that may be repeated. */
 typedef struct option_texts {
@@ -51,7 +51,8 @@ typedef struct settings {
   double guarantee; /* degrees */
   laves_format format;
   int64_t compress, threads, list;
-  int64_t memory; /* bytes; 0: no limit */
+  int64_t memory; /* bytes; 0: what the machine has */
+  double timeout; /* seconds; 0: no limit */
   option_numbers cells;
   double grading, min_size, max_size; /* sizes 0: not given */
   double curvature_elements, thickness_elements, feature_elements, max_distance, relative_distance, interior_growth;

@@ -16,6 +16,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "interrupt.h"
 #include "raster.h"
 
 static const double pi = 3.14159265358979323846;
@@ -185,7 +186,7 @@ static double occlusion_at(const camera *c, const scene *subject, const raster_p
   return hidden / occlusion_samples;
 }
 
-/* Occlusion of each pixel, smoothed over the 4 by 4 pattern among pixels at about the same depth. NULL: no memory. */
+/* Occlusion of each pixel, smoothed over the 4 by 4 pattern among pixels at about the same depth. NULL: no memory, or to stop. */
 static float *occlusion_map(const camera *c, const scene *subject, const raster_pixel *pixels, const picture_options *options) {
   int width = options->width, height = options->height;
   size_t count = (size_t)width * (size_t)height;
@@ -194,12 +195,12 @@ static float *occlusion_map(const camera *c, const scene *subject, const raster_
     return NULL;
   }
   float *smooth = raw + count;
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count && !interrupt_asked(); i++) {
     if (pixels[i].nearest >= 0) {
       raw[i] = (float)occlusion_at(c, subject, pixels, options, (int)(i % (size_t)width), (int)(i / (size_t)width));
     }
   }
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count && !interrupt_asked(); i++) {
     int x = (int)(i % (size_t)width), y = (int)(i / (size_t)width);
     double sum = 0, weight = 0;
     for (int k = 0; pixels[i].nearest >= 0 && k < 16; k++) {
@@ -227,7 +228,7 @@ static uint8_t to_srgb(double linear) {
 static void compose(const raster_pixel *pixels, const float *occlusion, const picture_options *options, uint8_t *rgba) {
   size_t count = (size_t)options->width * (size_t)options->height;
   double paper = options->background == PICTURE_DARK ? 0.012 : 1;
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count && !interrupt_asked(); i++) {
     const raster_pixel *pixel = &pixels[i];
     double light = fmax(0.15, 1 - occlusion_darkness * 2.2 * occlusion[i]), cover = pixel->coverage;
     bool clear = options->background == PICTURE_TRANSPARENT;
@@ -253,7 +254,7 @@ bool picture_draw(const scene *subject, const picture_options *options, uint8_t 
     goto done;
   }
   compose(pixels, occlusion + (size_t)options->width * (size_t)options->height, options, rgba);
-  done = true;
+  done = !interrupt_asked();
 done:
   free(pixels);
   free(triangles);

@@ -12,6 +12,7 @@
 #include <string.h>
 #include <zlib.h>
 
+#include "interrupt.h"
 #include "whole_file.h"
 
 enum { filter_count = 5, colour_rgb = 2, colour_rgba = 6 };
@@ -70,7 +71,7 @@ static uint8_t *filter_rows(const uint8_t *pixels, size_t row_size, int height, 
     return NULL;
   }
   const uint8_t *zeros = scratch + row_size;
-  for (int y = 0; y < height; y++) {
+  for (int y = 0; y < height && !interrupt_asked(); y++) {
     const uint8_t *row = pixels + row_size * (size_t)y;
     const uint8_t *above = y > 0 ? row - row_size : zeros;
     uint8_t *target = out + (row_size + 1) * (size_t)y;
@@ -86,6 +87,25 @@ static uint8_t *filter_rows(const uint8_t *pixels, size_t row_size, int height, 
   }
   free(scratch);
   return out;
+}
+
+/* Compresses in pieces, between which the work may stop. *packed_size: the room, then what is used of it. */
+static bool pack(const uint8_t *raw, size_t raw_size, uint8_t *packed, size_t *packed_size) {
+  enum { BEST = 9, PIECE = 1 << 16 };
+  z_stream z = {.next_in = (Bytef *)raw, .next_out = packed};
+  if (deflateInit(&z, BEST) != Z_OK) {
+    return false;
+  }
+  int status = Z_OK;
+  while (status == Z_OK && !interrupt_asked()) {
+    size_t done = (size_t)(z.next_in - raw), room = *packed_size - (size_t)(z.next_out - packed);
+    z.avail_in = (uInt)(raw_size - done < PIECE ? raw_size - done : PIECE);
+    z.avail_out = (uInt)(room < PIECE ? room : PIECE);
+    status = deflate(&z, done + z.avail_in == raw_size ? Z_FINISH : Z_NO_FLUSH);
+  }
+  *packed_size = (size_t)(z.next_out - packed);
+  deflateEnd(&z);
+  return status == Z_STREAM_END;
 }
 
 static bool write_chunks(FILE *file, const uint8_t *packed, size_t packed_size, int width, int height, int channels) {
@@ -105,10 +125,10 @@ bool png_write(const char *path, const uint8_t *pixels, int width, int height, i
   whole_file out;
   size_t row_size = (size_t)width * (size_t)channels;
   size_t raw_size = (row_size + 1) * (size_t)height;
-  uLongf packed_size = compressBound((uLong)raw_size);
+  size_t packed_size = compressBound((uLong)raw_size);
   uint8_t *raw = filter_rows(pixels, row_size, height, channels);
   uint8_t *packed = malloc(packed_size);
-  bool done = raw && packed && compress2(packed, &packed_size, raw, (uLong)raw_size, 9) == Z_OK;
+  bool done = raw && packed && pack(raw, raw_size, packed, &packed_size);
   if (!done) {
     errno = ENOMEM;
   }

@@ -38,7 +38,8 @@ static void draw_bar(const progress *bar, int filled) {
   if (bar->colour) fputs("\033[0m", stderr);
 }
 
-static void draw(progress *bar, double fraction, double now) {
+static void draw(progress *bar, double now) {
+  const double fraction = bar->fraction;
   fprintf(stderr, "\r%-12.12s ", bar->phase);
   draw_bar(bar, (int)(fraction * BAR_WIDTH));
   fprintf(stderr, " %3d %%", (int)(fraction * 100));
@@ -54,14 +55,13 @@ static void draw(progress *bar, double fraction, double now) {
 
 bool progress_report(void *user, const char *phase, double fraction) {
   progress *bar = user;
+  const bool new_phase = !bar->phase || strcmp(bar->phase, phase) != 0;
+  bar->phase = phase;
+  bar->fraction = fraction > 0 ? (fraction < 1 ? fraction : 1) : 0;
   if (!bar->enabled) return !interrupt_asked();
   const double now = progress_now();
-  if (!bar->phase || strcmp(bar->phase, phase) != 0) {
-    bar->phase = phase;
-    bar->phase_start = now;
-  }
-  fraction = fraction > 0 ? (fraction < 1 ? fraction : 1) : 0;
-  if (now - bar->drawn >= redraw_seconds) draw(bar, fraction, now);
+  if (new_phase) bar->phase_start = now;
+  if (now - bar->drawn >= redraw_seconds) draw(bar, now);
   return !interrupt_asked();
 }
 

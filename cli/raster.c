@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "interrupt.h"
+
 /* Samples along each side of a pixel: 9 in all leave no visible steps in lines a pixel wide. */
 enum { samples = 3, band_height = 64 };
 
@@ -149,7 +151,7 @@ bool raster_draw(const raster_triangle *triangles, size_t count, raster_pixel *p
   for (int first = 0; first < height; first += band_height) {
     int rows = height - first < band_height ? height - first : band_height;
     memset(band, 0, band_size * sizeof *band);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count && !interrupt_asked(); i++) {
       draw_triangle(&triangles[i], (int32_t)i, band, columns, first * samples, rows * samples);
     }
     for (int y = 0; y < rows; y++) {

@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "interrupt.h"
+
 /* Faces of a positive tetrahedron, outwards; face i is opposite corner i. */
 static const int tet_face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
@@ -128,12 +130,15 @@ static uint8_t *mark_vertices(const laves_mesh *mesh, const scene_options *optio
   return marks;
 }
 
-/* Matches the faces that may be exposed. */
+/* Matches the faces that may be exposed; false when memory is short or the work is to stop. */
 static bool collect_faces(const laves_mesh *mesh, const uint8_t *marks, face_table *table, size_t *kept_tets) {
   const int32_t *tets = laves_mesh_tets(mesh);
   size_t tet_count = laves_mesh_tet_count(mesh);
   for (size_t i = 0; i < tet_count; i++) {
     const int32_t *tet = tets + 4 * i;
+    if (interrupt_asked()) {
+      return false;
+    }
     bool kept = tet_is_kept(tet, marks);
     *kept_tets += kept;
     for (int f = 0; f < 4; f++) {
@@ -215,7 +220,7 @@ static void tet_corners(const laves_mesh *mesh, int64_t tet, double p[4][3]) {
 static void size_range(const laves_mesh *mesh, double range[2]) {
   static const double least_span = 4;
   double low = INFINITY, high = 0, p[4][3];
-  for (size_t i = 0; i < laves_mesh_tet_count(mesh); i++) {
+  for (size_t i = 0; i < laves_mesh_tet_count(mesh) && !interrupt_asked(); i++) {
     tet_corners(mesh, (int64_t)i, p);
     low = fmin(low, edge_length(p));
     high = fmax(high, edge_length(p));
@@ -347,7 +352,7 @@ static bool mark_creases(scene *out, double angle) {
   if (!table) {
     return false;
   }
-  for (size_t i = 0; i < 3 * out->face_count; i++) {
+  for (size_t i = 0; i < 3 * out->face_count && !interrupt_asked(); i++) {
     if (out->faces[i / 3].boundary) {
       mark_edge(out, table, size - 1, (int64_t)i, cos(angle * 3.14159265358979323846 / 180));
     }
@@ -371,12 +376,12 @@ bool scene_build(const laves_mesh *mesh, const scene_options *options, scene *ou
   if (options->colour == SCENE_SIZE) {
     size_range(mesh, out->sizes);
   }
-  for (size_t i = 0; i <= table.mask; i++) {
+  for (size_t i = 0; i <= table.mask && !interrupt_asked(); i++) {
     if (table.entries[i].kept == 1) {
       fill_face(mesh, &table.entries[i], options->colour, out->sizes, &out->faces[out->face_count++]);
     }
   }
-  done = !(options->crease_angle > 0) || mark_creases(out, options->crease_angle);
+  done = (!(options->crease_angle > 0) || mark_creases(out, options->crease_angle)) && !interrupt_asked();
 done:
   free(marks);
   free(table.entries);

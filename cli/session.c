@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 
 #include "interrupt.h"
+#include "machine.h"
 #include "text.h"
 #include "whole_file.h"
 
@@ -15,11 +16,12 @@ bool session_open(session *run, const settings *given) {
   *run = (session){.given = given, .start = progress_now(), .bar = progress_start(!given->quiet)};
   laves_context_options options = laves_context_options_default();
   options.thread_count = (int)given->threads;
-  options.memory_limit = (size_t)given->memory;
+  options.memory_limit = (size_t)(given->memory > 0 ? given->memory : machine_memory());
   options.progress = progress_report;
   options.progress_user = &run->bar;
   run->context = laves_context_create(&options);
   if (!run->context) text_error("%s", laves_result_text(LAVES_ERROR_MEMORY));
+  if (given->timeout > 0) interrupt_after(given->timeout);
   return run->context != NULL;
 }
 
@@ -32,9 +34,21 @@ laves_result session_fail(session *run, laves_result result, const char *format,
   return result;
 }
 
+/* Only meshing has a size to choose; the rest has the input that it has. */
+static laves_result fail_timeout(session *run) {
+  const bool sized = run->given->size > 0 || run->given->relative_size > 0 || run->given->tets > 0 || run->given->vertices > 0;
+  char phase[80] = "before the work began";
+  if (run->bar.phase)
+    snprintf(phase, sizeof phase, "in the phase '%.40s', %.0f %% of it done", run->bar.phase, 100 * run->bar.fraction);
+  return session_fail(run, LAVES_ERROR_TIMEOUT,
+                      "the %g s of --timeout were over %s; nothing half-written is left; allow more time%s", run->given->timeout,
+                      phase, sized ? " or ask for fewer, larger tetrahedra" : "");
+}
+
 laves_result session_settle(session *run, laves_result result) {
   progress_clear(&run->bar);
   if (!interrupt_asked()) return result;
+  if (interrupt_by_time()) return fail_timeout(run);
   return session_fail(run, LAVES_ERROR_CANCELLED, "interrupted; nothing half-written is left");
 }
 
@@ -97,6 +111,8 @@ void session_write_json(session *run, laves_result *result, session_facts_fn *wr
 int session_close(session *run, laves_result result) {
   progress_clear(&run->bar);
   if (is_failure(result)) text_error("%s", run->error.text[0] ? run->error.text : laves_result_text(result));
+  if (result == LAVES_ERROR_MEMORY && run->given->memory == 0)
+    text_say("The limit is the memory of this machine; --memory sets another.");
   laves_context_free(run->context);
   return laves_result_exit_code(result);
 }

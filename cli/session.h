@@ -24,8 +24,8 @@ bool session_open(session *run, const settings *given);
 /* Fills the session's error and returns result. */
 laves_result session_fail(session *run, laves_result result, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
-/* Wipes the progress line and, where the user asked to stop meanwhile, turns the result into a cancel. After each call
- * into the library that may take long. */
+/* Wipes the progress line and, where the user asked to stop meanwhile or the time is over, turns the result into that. After each
+ * call into the library that may take long. */
 laves_result session_settle(session *run, laves_result result);
 
 /* Writes the members of a command's JSON object; `facts` is the command's. */

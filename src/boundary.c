@@ -23,6 +23,7 @@ static laves_result make_graded_background(laves__run *r) {
 
 static laves_result make_background(laves__run *r) {
   laves__stage_begin(r);
+  laves__layer_free(&r->layer);
   laves__lattice_free(&r->lattice);
   const laves_result result = r->sizes ? make_graded_background(r)
                                        : laves__lattice_create(r->context, laves__frame_bounds(&r->frame), &r->lattice, r->error);
@@ -99,6 +100,7 @@ static laves_result conform(laves__run *r) {
   const laves_result result = snap(r);
   if (result != LAVES_OK || !laves__may_mend(r)) return result;
   r->rough = is_rough(r);
+  if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
   return laves__filled_share(r) < least_snapped ? laves__stuff_everything(r) : result;
 }
 

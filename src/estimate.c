@@ -5,12 +5,22 @@
  * together until the estimate meets it, as the pipeline does with the counts themselves. */
 #include "estimate.h"
 
+#include <stdio.h>
+
 #include "background/c15_table.h"
 #include "graded/graded.h"
 #include "options.h"
 
 static const double cell_side = LAVES__C15_PERIOD / LAVES__C15_MEAN_EDGE;
 enum { CORRECTIONS = 8 };
+
+/* Bytes of the context, measured on balls, a plate, a torus, a gyroid, surfaces and machine parts of 0.05 to 8 million tets.
+ * While the mesh is filled and the layer still stands: per tet, and per tet of the layer, which takes up so many for each size^2
+ * of surface. */
+static const double bytes_at_start = 2e6, made_per_tet = 22, made_per_layer_tet = 121, layer_per_area = 16.1;
+/* While it is certified: faces are matched in ranges, so that many tets take less each; samples go with the surface. */
+static const double certified_per_tet = 90, matched_at_most = 160e6, certified_beyond = 25, certified_per_area = 2600;
+static const double certified_per_varying_tet = 200;
 
 typedef struct estimating {
   laves_context *context;
@@ -26,7 +36,10 @@ laves_result laves__estimate_graded(laves_context *context, const laves_options 
   for (int correction = 0;; correction++) {
     laves__demand demand;
     if (!laves__wishes_demand(wishes, frame, &demand)) return laves__fail_memory(context, error);
-    laves_result result = laves__graded_estimate(frame, &demand, context, &counts->tets, &counts->vertices, error);
+    size_t leaves = 0;
+    laves_result result = laves__graded_estimate(frame, &demand, context, &counts->tets, &counts->vertices, &leaves, error);
+    counts->peak_bytes = laves__graded_bytes(leaves);
+    counts->certify_bytes = bytes_at_start + certified_per_varying_tet * counts->tets;
     if (result == LAVES_OK) result = laves__size_status(wishes->size, error);
     if (result != LAVES_OK) return result;
     const double factor = laves__options_correction(options, (int64_t)counts->tets, (int64_t)counts->vertices);
@@ -35,10 +48,53 @@ laves_result laves__estimate_graded(laves_context *context, const laves_options 
   }
 }
 
-static void count_uniform(const estimating *e, double size, laves_expectation *out) {
-  const double cells = e->volume / (cell_side * size * cell_side * size * cell_side * size);
+static void count_uniform(double volume, double area, double size, laves_expectation *out) {
+  const double cells = volume / (cell_side * size * cell_side * size * cell_side * size), places = area / (size * size);
+  out->size = size;
   out->tets = LAVES__C15_TETS * cells;
   out->vertices = LAVES__C15_SITES * cells;
+  out->peak_bytes = bytes_at_start + made_per_tet * out->tets + made_per_layer_tet * fmin(out->tets, layer_per_area * places);
+  out->certify_bytes = bytes_at_start + certified_per_area * places +
+                       fmin(certified_per_tet * out->tets, matched_at_most + certified_beyond * out->tets);
+}
+
+/* The least size, to two digits, whose mesh fits into `room`. */
+static double fitting_size(double volume, double area, double size, double room) {
+  laves_expectation of = {0};
+  double low = size, high = size;
+  do {
+    high *= 2;
+    count_uniform(volume, area, high, &of);
+  } while (of.peak_bytes > room && isfinite(high));
+  while (high / low > 1.001) {
+    const double middle = sqrt(low) * sqrt(high);
+    count_uniform(volume, area, middle, &of);
+    *(of.peak_bytes > room ? &low : &high) = middle;
+  }
+  const double digit = pow(10, floor(log10(high)) - 1);
+  return ceil(high / digit) * digit;
+}
+
+laves_result laves__refuse_uniform(laves_context *context, const laves__oracle *oracle, double volume, double size,
+                                   laves_error *error) {
+  if (laves__may_fit(context, INFINITY)) return LAVES_OK;
+  const double area = laves__domain_area(context, oracle), room = laves__room(context);
+  laves_expectation of = {0}, fitting = {0};
+  if (laves__is_cancelled(context)) return laves__fail_cancelled(error);
+  count_uniform(volume, area, size, &of);
+  if (laves__may_fit(context, of.peak_bytes)) return LAVES_OK;
+  char what[120], remedy[160] = "raise it";
+  static const double countless = 1e15;
+  if (of.tets < countless)
+    snprintf(what, sizeof what, "a mesh of size %.3g (about %.2g tetrahedra)", size, of.tets);
+  else
+    snprintf(what, sizeof what, "a mesh of so small a size as %.3g", size);
+  if (room > bytes_at_start) {
+    count_uniform(volume, area, fitting_size(volume, area, size, room), &fitting);
+    snprintf(remedy, sizeof remedy, "raise it, or choose a size of %.2g, which fits (about %.2g tetrahedra)", fitting.size,
+             fitting.tets);
+  }
+  return laves__fail_room(context, of.peak_bytes, what, remedy, error);
 }
 
 static laves_result find_frame(estimating *e, const laves_domain *domain, laves_error *error) {
@@ -63,7 +119,8 @@ laves_result laves_estimate(laves_context *context, const laves_domain *domain, 
   if (result == LAVES_OK) result = laves__size_create(context, domain, options, e.frame.size, &e.sizes, error);
   if (result == LAVES_OK && laves__size_is_constant(e.sizes)) {
     e.frame.size = laves__size_ceiling(e.sizes);
-    count_uniform(&e, e.frame.size, expectation);
+    count_uniform(e.volume, laves__domain_area(context, &domain->oracle), e.frame.size, expectation);
+    if (laves__is_cancelled(context)) result = laves__fail_cancelled(error);
   } else if (result == LAVES_OK) {
     result = laves__wishes_make(context, e.sizes, e.frame.size, &e.wishes, error);
     if (result == LAVES_OK) result = laves__estimate_graded(context, options, &e.wishes, &e.frame, expectation, error);
@@ -71,5 +128,7 @@ laves_result laves_estimate(laves_context *context, const laves_domain *domain, 
   expectation->size = e.frame.size;
   laves__wishes_free(&e.wishes);
   laves__size_free(e.sizes);
+  expectation->peak_bytes += (double)laves_context_bytes(context);
+  expectation->certify_bytes += (double)laves_context_bytes(context);
   return result;
 }

@@ -38,6 +38,7 @@ static laves_result choose_sizes(laves__run *r) {
     r->frame.size = laves__size_ceiling(r->sizes);
     laves__size_free(r->sizes);
     r->sizes = NULL;
+    result = laves__refuse_uniform(r->context, r->frame.oracle, r->report->volume, r->frame.size, r->error);
   } else if (result == LAVES_OK && r->options->method == LAVES_METHOD_STUFF) {
     result = laves__fail(r->error, LAVES_ERROR_OPTION,
                          "stuffing needs one size everywhere, but sizes that vary were asked for; leave one of the two away");

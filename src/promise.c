@@ -85,7 +85,8 @@ static laves_result improve(laves__run *r, bool again) {
                              .held_max = held ? r->guarantee->max_dihedral - held_slack : 180,
                              .again = again,
                              .brief = r->rough};
-  const laves_result result = laves__improve(&r->frame, &aim, &r->layer, r->error);
+  const laves_result result =
+      laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : laves__improve(&r->frame, &aim, &r->layer, r->error);
   laves__stage_end(r, "improve");
   return result;
 }
@@ -96,6 +97,7 @@ static laves_result release_features(laves__run *r) {
   laves_result result = LAVES_OK;
   for (int what = LAVES__RELEASE_OFF; what < LAVES__RELEASES && result == LAVES_OK && r->options->improve; what++) {
     const size_t released = laves__release_features(&r->frame, &feature_window, what, &r->layer);
+    if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
     r->released += released;
     if (released > 0) result = improve(r, true);
   }
@@ -132,6 +134,7 @@ static laves_result mend_promise(laves__run *r) {
     laves_result result = find_forced(r);
     if (result != LAVES_OK) return result;
     const size_t broken = laves__count_broken(r->guarantee, &r->layer, r->forced);
+    if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
     if (broken == 0) return LAVES_OK;
     const bool crowd = (double)broken > crowded * (double)r->layer.tet_count;
     laves__zone_around(r->guarantee, &r->layer, r->forced, reach[round < REACHES ? round : REACHES - 1], &r->lattice);

@@ -92,8 +92,9 @@ laves_result laves__judge(laves__run *r, const laves_mesh *mesh) {
   report->outside_window = laves__improve_outside(
       &(laves__window){.min_dihedral = o->min_dihedral, .max_dihedral = o->max_dihedral, .volume_length = o->volume_length},
       &r->layer);
+  const size_t broken = r->guarantee ? laves__count_broken(r->guarantee, &r->layer, r->forced) : 0;
   report->peak_bytes = laves_context_peak_bytes(r->context);
-  laves_result known = judge_features(r);
+  laves_result known = laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : judge_features(r);
   if (known == LAVES_OK) known = judge_thin(r, mesh);
   if (known != LAVES_OK) return known;
   if (report->off_surface)
@@ -102,7 +103,6 @@ laves_result laves__judge(laves__run *r, const laves_mesh *mesh) {
   if (report->outside_window)
     laves__warn(r, "%zu tetrahedra are outside the asked window of %g to %g degrees and volume-length %g", report->outside_window,
                 o->min_dihedral, o->max_dihedral, o->volume_length);
-  const size_t broken = r->guarantee ? laves__count_broken(r->guarantee, &r->layer, r->forced) : 0;
   if (broken)
     laves__warn(r,
                 "%zu tetrahedra are outside the promised window of %g to %g degrees, which should not happen; please report it",

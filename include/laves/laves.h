@@ -40,7 +40,8 @@ LAVES_API const char *laves_version(void);
 
 /* ---- results and errors ----------------------------------------------------------------------------------------- */
 
-/// One list makes the enum, the names and the messages: X(name, exit code of the program, meaning).
+/// One list makes the enum, the names and the messages: X(name, exit code of the program, meaning). ERROR_TIMEOUT is the
+/// program's alone: who calls the library ends a call that takes too long by its progress callback.
 #define LAVES_RESULT_LIST(X)                                               \
   X(OK, 0, "done")                                                         \
   X(TARGET_MISSED, 3, "the mesh is valid, but a wished target was missed") \
@@ -49,6 +50,7 @@ LAVES_API const char *laves_version(void);
   X(ERROR_MEMORY, 4, "out of memory, or over the memory limit")            \
   X(ERROR_WRITE, 5, "the output cannot be written")                        \
   X(ERROR_CANCELLED, 130, "cancelled by the progress callback")            \
+  X(ERROR_TIMEOUT, 124, "the time that the program was given is over")     \
   X(ERROR_INTERNAL, 70, "a promise of the library was broken; please report it")
 
 typedef enum laves_result {
@@ -85,8 +87,8 @@ typedef void *laves_reallocate_fn(void *user, void *pointer, size_t old_bytes, s
 typedef bool laves_progress_fn(void *user, const char *phase, double fraction);
 
 typedef struct laves_context_options {
-  int thread_count;                 ///< threads to use; 0: one per core. The result never depends on it.
-  size_t memory_limit;              ///< bytes that the context may hold at once; 0: no limit
+  int thread_count;     ///< threads to use; 0: one per core. The result never depends on it.
+  size_t memory_limit;  ///< bytes that the context may hold at once, all but some MiB of what a process takes; 0: none
   laves_reallocate_fn *reallocate;  ///< NULL: the C library's
   void *reallocate_user;
   laves_progress_fn *progress;  ///< NULL: none
@@ -469,18 +471,24 @@ typedef struct laves_report {
 /// @return LAVES_OK; LAVES_TARGET_MISSED when the mesh is valid but a wished target was not reached (see report);
 ///         LAVES_ERROR_OPTION, LAVES_ERROR_INPUT (nothing inside at this size), LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED
 /// Cost: about O(volume / size^3) time and memory for the interior, O(area / size^2) oracle calls.
-/// The result is the same for any number of threads.
+/// Where the context has a memory limit, a mesh that is expected not to fit is refused before it is begun (LAVES_ERROR_MEMORY),
+/// with a size that fits in the sentence; one that needs more than was expected ends when it reaches the limit. The result is the
+/// same for any number of threads.
 LAVES_API laves_result laves_generate(laves_context *context, const laves_domain *domain, const laves_options *options,
                                       laves_mesh **mesh, laves_report *report, laves_error *error);
 
 /// What a mesh is likely to hold, before it is made.
 typedef struct laves_expectation {
-  double size;      ///< as laves_report.size
-  double tets;      ///< within some per cent where sizes are well below the solid's own
-  double vertices;  ///< the same; up to a quarter too few where most of the mesh is near the surface
+  double size;        ///< as laves_report.size
+  double tets;        ///< within some per cent where sizes are well below the solid's own
+  double vertices;    ///< the same; up to a quarter too few where most of the mesh is near the surface
+  double peak_bytes;  ///< most memory that laves_generate() will make the context hold, with what it holds now; within a quarter
+  double certify_bytes;  ///< the same of laves_certify() and laves_mesh_write(), rough: up to twice as much where implicit solids
+                         ///< have creases
 } laves_expectation;
 
-/// Estimates the counts of a mesh, with all that makes sizes vary.
+/// Estimates the counts and the memory of a mesh, with all that makes sizes vary. What is over the context's memory limit is told
+/// like anything else here; laves_generate() refuses it.
 /// @param options      as for laves_generate(); with tet_target or vertex_target, all sizes are scaled until they are met
 /// @param expectation  out
 /// @return LAVES_OK, LAVES_ERROR_OPTION, LAVES_ERROR_INPUT, LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+enum { VERTICES_PER_BLOCK = 256 };
+
 static size_t star_total(const laves__graph *g) { return 4 * g->tet_count; }
 
 /* Counts to first places: first[v + 1] holds the count of v before, and the end of v after. */
@@ -12,11 +14,15 @@ static void sum_up(uint32_t *first, size_t count) {
 }
 
 static void fill_stars(laves__graph *g) {
-  for (size_t t = 0; t < g->tet_count; t++)
+  for (size_t t = 0; t < g->tet_count; t++) {
+    if (laves__cancelled_at(g->context, "background", t, g->tet_count)) return;
     for (int k = 0; k < 4; k++) g->star_first[g->tet[t][k] + 1]++;
+  }
   sum_up(g->star_first, g->vertex_count);
-  for (size_t t = 0; t < g->tet_count; t++)
+  for (size_t t = 0; t < g->tet_count; t++) {
+    if (laves__cancelled_at(g->context, "background", t, g->tet_count)) return;
     for (int k = 0; k < 4; k++) g->star[g->star_first[g->tet[t][k]]++] = (int32_t)t;
+  }
   for (size_t v = g->vertex_count; v > 0; v--) g->star_first[v] = g->star_first[v - 1];
   g->star_first[0] = 0;
 }
@@ -38,6 +44,30 @@ static uint32_t gather_link(const laves__graph *g, size_t v, int32_t *link) {
   return count;
 }
 
+/* In the place of a count: more than the masks and lists of stars hold. */
+static const uint32_t too_large = UINT32_MAX;
+
+static void count_links(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const laves__graph *g = user;
+  int32_t around[3 * LAVES__STAR_LIMIT + 1];
+  for (size_t v = begin; v < end; v++) {
+    const bool fits = g->star_first[v + 1] - g->star_first[v] <= LAVES__STAR_LIMIT;
+    const uint32_t count = fits ? gather_link(g, v, around) : too_large;
+    g->link_first[v + 1] = count <= LAVES__LINK_LIMIT ? count : too_large;
+  }
+}
+
+static void fill_links(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const laves__graph *g = user;
+  int32_t around[3 * LAVES__STAR_LIMIT + 1];
+  for (size_t v = begin; v < end; v++) {
+    const uint32_t count = gather_link(g, v, around);
+    memcpy(g->link + g->link_first[v], around, count * sizeof *around);
+  }
+}
+
 /* Stars are masks of 64 bits; the octree's have at most 48 tets, so this is a broken promise and not the user's fault. */
 static laves_result star_too_large(uint32_t tets, laves_error *error) {
   return laves__fail(
@@ -48,30 +78,23 @@ static laves_result star_too_large(uint32_t tets, laves_error *error) {
 
 laves_result laves__graph_link(laves__graph *g, laves_error *error) {
   laves_context *context = g->context;
-  size_t links = 0;
   g->star_first = laves__alloc_zeroed(context, g->vertex_count + 1, sizeof *g->star_first);
   g->link_first = laves__alloc_zeroed(context, g->vertex_count + 1, sizeof *g->link_first);
   g->star = laves__alloc(context, star_total(g), sizeof *g->star);
   g->flags = laves__alloc_zeroed(context, g->tet_count, 1);
   if (!g->star_first || !g->link_first || !g->star || !g->flags) return laves__fail_memory(context, error);
   fill_stars(g);
-  if (laves__cancelled(context, "background", 0)) return laves__fail_cancelled(error);
+  if (laves__is_cancelled(context) ||
+      !laves__parallel_for(context, "background", g->vertex_count, VERTICES_PER_BLOCK, count_links, g))
+    return laves__fail_cancelled(error);
   for (size_t v = 0; v < g->vertex_count; v++) {
-    int32_t around[3 * LAVES__STAR_LIMIT + 1];
-    const uint32_t tets = g->star_first[v + 1] - g->star_first[v];
-    const uint32_t count = tets <= LAVES__STAR_LIMIT ? gather_link(g, v, around) : 0;
-    if (tets > LAVES__STAR_LIMIT || count > LAVES__LINK_LIMIT) return star_too_large(tets, error);
-    links += count;
-    g->link_first[v + 1] = (uint32_t)links;
+    if (g->link_first[v + 1] == too_large) return star_too_large(g->star_first[v + 1] - g->star_first[v], error);
+    g->link_first[v + 1] += g->link_first[v];
   }
-  g->link = laves__alloc(context, links, sizeof *g->link);
+  g->link = laves__alloc(context, g->link_first[g->vertex_count], sizeof *g->link);
   if (!g->link) return laves__fail_memory(context, error);
-  if (laves__cancelled(context, "background", 0)) return laves__fail_cancelled(error);
-  for (size_t v = 0; v < g->vertex_count; v++) {
-    int32_t around[3 * LAVES__STAR_LIMIT + 1];
-    const uint32_t count = gather_link(g, v, around);
-    memcpy(g->link + g->link_first[v], around, count * sizeof *around);
-  }
+  if (!laves__parallel_for(context, "background", g->vertex_count, VERTICES_PER_BLOCK, fill_links, g))
+    return laves__fail_cancelled(error);
   return LAVES_OK;
 }
 

@@ -39,28 +39,46 @@ void laves__free(laves_context *context, void *block, size_t count, size_t size)
  * `block` is the address of the item pointer. */
 bool laves__grow(laves_context *context, void *block, size_t *capacity, size_t needed, size_t size);
 
+/* Whether so many bytes more can be within the limit: true where there is none. The number is an estimate that may be a quarter
+ * too large, so what is refused could not have been. */
+bool laves__may_fit(const laves_context *context, double bytes);
+/* So many bytes fit beside what is held, even if they are an estimate that is a quarter too small. INFINITY: there is no limit.
+ */
+double laves__room(const laves_context *context);
+
 /* ---- errors ---- */
 
 /* Fills error (may be NULL) with result and a printf sentence, and returns result. */
 laves_result laves__fail(laves_error *error, laves_result result, const char *format, ...) __attribute__((format(printf, 3, 4)));
 void laves__tell_memory(const laves_context *context, laves_error *error);
 void laves__tell_cancelled(laves_error *error);
-/* The standard sentence for a failed allocation; tells the limit where there is one. Inline, so that compilers and analysers
- * see that it never returns LAVES_OK. */
-static inline laves_result laves__fail_memory(const laves_context *context, laves_error *error) {
-  laves__tell_memory(context, error);
-  return LAVES_ERROR_MEMORY;
-}
+bool laves__is_cancelled(const laves_context *context);
+/* These two are inline, so that compilers and analysers see that they never return LAVES_OK. */
 static inline laves_result laves__fail_cancelled(laves_error *error) {
   laves__tell_cancelled(error);
   return LAVES_ERROR_CANCELLED;
 }
+/* The standard sentence for a step that could not be completed, when all that is known is that memory was short or a cancel cut
+ * it off: after a cancel the result is that; else it is the memory, and the limit is told where there is one. */
+static inline laves_result laves__fail_memory(const laves_context *context, laves_error *error) {
+  if (laves__is_cancelled(context)) return laves__fail_cancelled(error);
+  laves__tell_memory(context, error);
+  return LAVES_ERROR_MEMORY;
+}
+/* That `bytes` more, an estimate, are beyond the limit: for `what`, a noun, and what would fit, a clause. */
+laves_result laves__fail_room(const laves_context *context, double bytes, const char *what, const char *remedy,
+                              laves_error *error);
 
 /* ---- progress ---- */
 
 /* Reports and asks: true when the caller wants to cancel; once cancelled it stays so until laves__progress_reset().
  * Call only from the thread that entered the library. `phase` is a static string, fraction in 0..1. */
 bool laves__cancelled(laves_context *context, const char *phase, double fraction);
+/* The same for item `index` of `count` of a loop whose turns take a microsecond at most: asks at some of them only. */
+static inline bool laves__cancelled_at(laves_context *context, const char *phase, size_t index, size_t count) {
+  enum { TURNS = 1 << 14 };
+  return index % TURNS == 0 && laves__cancelled(context, phase, (double)index / (double)count);
+}
 /* Whether a cancel has been asked for; callable from any thread. */
 bool laves__is_cancelled(const laves_context *context);
 /* Forget an earlier cancel; at the start of each public call. */
@@ -68,10 +86,11 @@ void laves__progress_reset(laves_context *context);
 
 /* ---- threads ---- */
 
-/* Runs fn over [0, count) in blocks of at least min_block, in parallel. Which worker (0 .. laves__workers()-1) gets which
- * block may vary from run to run, so results must be written to places that depend on the index alone.
- * Between blocks the calling thread reports progress under `phase` (NULL: silently); after a cancel the remaining blocks
- * are skipped and the function returns false. */
+/* Runs fn over [0, count) in blocks of at least min_block, in parallel. Where blocks begin and which worker
+ * (0 .. laves__workers()-1) gets which may vary from run to run, so results must be written to places that depend on the index
+ * alone. Between blocks the calling thread reports progress under `phase` (NULL: silently); after a cancel the remaining blocks
+ * are skipped and the function returns false. Blocks are made to take some milliseconds, so that a cancel is soon heard where
+ * min_block items take no longer. */
 typedef void laves__range_fn(void *user, size_t begin, size_t end, int worker);
 bool laves__parallel_for(laves_context *context, const char *phase, size_t count, size_t min_block, laves__range_fn *fn,
                          void *user);

@@ -2,6 +2,7 @@
  *
  * Bytes are counted with atomics, so any thread may allocate; the limit is checked before the block is asked for, so a
  * refusal leaves the count as it was. */
+#include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -56,6 +57,19 @@ static bool count_in(laves_context *context, size_t more) {
   while (now > peak && !atomic_compare_exchange_weak(&context->peak, &peak, now)) {
   }
   return true;
+}
+
+static const double estimate_slack = 1.25;
+
+bool laves__may_fit(const laves_context *context, double bytes) {
+  const double held = (double)laves_context_bytes(context), limit = (double)context->options.memory_limit;
+  return limit == 0 || held + bytes / estimate_slack <= limit;
+}
+
+double laves__room(const laves_context *context) {
+  const double held = (double)laves_context_bytes(context), limit = (double)context->options.memory_limit;
+  if (limit == 0) return INFINITY;
+  return limit > held ? (limit - held) / estimate_slack : 0;
 }
 
 void *laves__realloc(laves_context *context, void *block, size_t old_count, size_t new_count, size_t size) {

@@ -37,15 +37,35 @@ laves_result laves__fail(laves_error *error, laves_result result, const char *fo
   return result;
 }
 
-void laves__tell_memory(const laves_context *context, laves_error *error) {
-  const double mib = 1048576.0, used = (double)laves_context_bytes(context) / mib;
-  const size_t limit = context->options.memory_limit;
-  if (limit)
-    laves__fail(error, LAVES_ERROR_MEMORY,
-                "the memory limit of %.0f MiB does not suffice (%.0f MiB are in use); raise it or choose a larger size",
-                (double)limit / mib, used);
+/* "1.5 GiB"; what is beyond all machines is only told to be that. */
+static void write_bytes(double bytes, char text[32]) {
+  static const char *const units[] = {"KiB", "MiB", "GiB", "TiB"};
+  int unit = 0;
+  for (bytes /= 1024; bytes >= 1000 && unit < 3; bytes /= 1024) unit++;
+  if (bytes < 1e6)
+    snprintf(text, 32, "%.3g %s", bytes, units[unit]);
   else
-    laves__fail(error, LAVES_ERROR_MEMORY, "out of memory with %.0f MiB in use; choose a larger size", used);
+    snprintf(text, 32, "more than a million TiB");
+}
+
+void laves__tell_memory(const laves_context *context, laves_error *error) {
+  char limit[32], held[32];
+  write_bytes((double)context->options.memory_limit, limit);
+  write_bytes((double)laves_context_bytes(context), held);
+  if (context->options.memory_limit)
+    laves__fail(error, LAVES_ERROR_MEMORY,
+                "the memory limit of %s does not suffice (%s are in use); raise it or choose a larger size", limit, held);
+  else
+    laves__fail(error, LAVES_ERROR_MEMORY, "out of memory with %s in use; choose a larger size", held);
+}
+
+laves_result laves__fail_room(const laves_context *context, double bytes, const char *what, const char *remedy,
+                              laves_error *error) {
+  char needed[32], given[32];
+  write_bytes((double)laves_context_bytes(context) + bytes, needed);
+  write_bytes((double)context->options.memory_limit, given);
+  return laves__fail(error, LAVES_ERROR_MEMORY, "%s would need %s of memory, but the limit is %s; %s", what, needed, given,
+                     remedy);
 }
 
 void laves__tell_cancelled(laves_error *error) {

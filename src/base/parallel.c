@@ -1,9 +1,10 @@
 /* The one parallel loop.
  *
  * Blocks are handed out by an atomic counter, so a slow block does not hold the others up; which worker gets which block
- * differs from run to run, which is why bodies may write only to places that depend on the index. Worker 0 is the calling
- * thread and the only one that reports progress. OpenMP supplies the threads; builds with LAVES_PTHREADS start POSIX threads
- * instead, for tools that cannot see into an OpenMP run time. */
+ * differs from run to run, which is why bodies may write only to places that depend on the index. Each worker begins with the
+ * smallest blocks and makes its next ones larger or smaller by the time that they take: large enough to cost nothing, small
+ * enough to hear of a cancel soon. Worker 0 is the calling thread and the only one that reports progress. OpenMP supplies the
+ * threads; builds with LAVES_PTHREADS start POSIX threads instead, for tools that cannot see into an OpenMP run time. */
 #include <stdatomic.h>
 
 #include "base/base.h"
@@ -18,12 +19,15 @@
 
 enum { BLOCKS_PER_WORKER = 16, WORKERS_MAX = 256 };
 
+/* Seconds below which the next block is twice as large, and above which it is half as large. */
+static const double quick_block = 2e-3, slow_block = 8e-3;
+
 typedef struct loop {
   laves_context *context;
   const char *phase;
   laves__range_fn *fn;
   void *user;
-  size_t count, block;
+  size_t count, smallest, largest; /* items in all, and of a block */
   atomic_size_t next;
 } loop;
 
@@ -40,14 +44,24 @@ int laves__threads_available(int thread_count) {
 
 int laves__workers(const laves_context *context) { return context->worker_count; }
 
+static size_t next_block(const loop *l, size_t block, double seconds) {
+  if (seconds < quick_block) return block < l->largest / 2 ? 2 * block : l->largest;
+  if (seconds > slow_block) return block / 2 > l->smallest ? block / 2 : l->smallest;
+  return block;
+}
+
 static void work(loop *l, int worker) {
-  for (;;) {
+  size_t block = l->smallest;
+  for (double now = laves__wall_seconds();;) {
     if (laves__is_cancelled(l->context)) return;
-    const size_t begin = atomic_fetch_add(&l->next, l->block);
+    const size_t begin = atomic_fetch_add(&l->next, block);
     if (begin >= l->count) return;
-    const size_t end = begin + l->block < l->count ? begin + l->block : l->count;
+    const size_t end = block < l->count - begin ? begin + block : l->count;
     if (worker == 0 && laves__cancelled(l->context, l->phase, (double)begin / (double)l->count)) return;
     l->fn(l->user, begin, end, worker);
+    const double start = now;
+    now = laves__wall_seconds();
+    block = next_block(l, block, now - start);
   }
 }
 
@@ -86,12 +100,11 @@ bool laves__parallel_for(laves_context *context, const char *phase, size_t count
                          void *user) {
   if (count == 0) return !laves__is_cancelled(context);
   int workers = context->worker_count;
-  size_t block = count / ((size_t)workers * BLOCKS_PER_WORKER);
-  if (block < min_block) block = min_block;
-  if (block < 1) block = 1;
-  const size_t blocks = (count + block - 1) / block;
+  const size_t smallest = min_block > 1 ? min_block : 1, share = count / ((size_t)workers * BLOCKS_PER_WORKER);
+  const size_t blocks = (count - 1) / smallest + 1;
   if (blocks < (size_t)workers) workers = (int)blocks;
-  loop l = {.context = context, .phase = phase, .fn = fn, .user = user, .count = count, .block = block};
+  loop l = {.context = context, .phase = phase, .fn = fn, .user = user, .count = count, .smallest = smallest};
+  l.largest = share > smallest ? share : smallest;
   atomic_init(&l.next, 0);
   if (workers == 1)
     work(&l, 0);

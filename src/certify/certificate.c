@@ -184,6 +184,7 @@ laves_result laves_certify(laves_context *context, const laves_mesh *mesh, const
   if (!options) options = &defaults;
   if (options->cookie != certify_cookie)
     return laves__fail(error, LAVES_ERROR_OPTION, "the options do not come from laves_certify_options_default()");
+  laves__progress_reset(context);
   laves_certificate *c = certificate;
   laves__survey survey;
   feature_part part = {0};

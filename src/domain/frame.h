@@ -47,5 +47,8 @@ laves__mat3 laves__principal_axes(const laves__oracle *oracle);
  * surface may cross (paper, section 4.2); relative error below about 0.5 % for compact solids.
  * Reports progress; after a cancel the result means nothing. */
 double laves__domain_volume(laves_context *context, const laves__oracle *oracle);
+/* The area of its surface, if need be from some thousand samples: within a tenth where no part is thinner than a hundredth of the
+ * diagonal. After a cancel, or when memory is short, anything. */
+double laves__domain_area(laves_context *context, const laves__oracle *oracle);
 
 #endif

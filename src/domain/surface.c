@@ -57,9 +57,9 @@ static laves__box3 box_of(const laves__vec3 *points, size_t count) {
   return b;
 }
 
-static laves__box3 used_box(const laves__surface_input *input) {
+static laves__box3 used_box(laves_context *context, const laves__surface_input *input) {
   laves__box3 b = box3_empty();
-  for (size_t f = 0; f < input->triangle_count; f++)
+  for (size_t f = 0; f < input->triangle_count && !laves__cancelled_at(context, "surface", f, input->triangle_count); f++)
     for (int i = 0; i < 3; i++) b = box3_add(b, input->points[input->triangles[f][i]]);
   return b;
 }
@@ -82,7 +82,7 @@ static bool reorder(laves__surface *s, const uint32_t *order) {
     laves__free(s->context, sources, s->face_capacity, sizeof *sources);
     return false;
   }
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count && !laves__cancelled_at(s->context, "surface", i, count); i++) {
     memcpy(faces[i], s->faces[order[i]], sizeof *faces);
     if (tags) tags[i] = s->tags[order[i]];
     sources[i] = s->sources[order[i]];
@@ -93,7 +93,7 @@ static bool reorder(laves__surface *s, const uint32_t *order) {
   s->faces = faces;
   s->tags = tags;
   s->sources = sources;
-  return true;
+  return !laves__is_cancelled(s->context);
 }
 
 /* Points change to the order in which faces first use them, so that what is near in space is near in memory. */
@@ -430,10 +430,11 @@ static laves_result make_surface(laves__surface *s, const laves__surface_input *
 laves_result laves__surface_build(laves_context *context, laves__surface_input *input, const laves_surface_options *options,
                                   laves_domain *domain, laves_error *error) {
   const laves_surface_options given = options ? *options : laves_surface_options_default();
-  const laves__box3 box = used_box(input);
+  const laves__box3 box = used_box(context, input);
   laves__surface *s = NULL;
   laves_result result = laves__surface_options_check(&given, error);
   if (given.defects) laves__defects_clear(given.defects);
+  if (result == LAVES_OK && laves__is_cancelled(context)) result = laves__fail_cancelled(error);
   if (result == LAVES_OK) result = check_input(input, box3_diagonal(box), error);
   if (result != LAVES_OK) goto clean_up;
   s = laves__alloc_zeroed(context, 1, sizeof *s);

@@ -68,8 +68,10 @@ static box items_box(const item *items, uint32_t begin, uint32_t end) {
   return b;
 }
 
-static void make_items(const laves__bvh *bvh, const laves__vec3 *points, const uint32_t (*faces)[3], size_t count, item *items) {
+static void make_items(laves_context *context, const laves__bvh *bvh, const laves__vec3 *points, const uint32_t (*faces)[3],
+                       size_t count, item *items) {
   for (size_t f = 0; f < count; f++) {
+    if (laves__cancelled_at(context, "surface", f, count)) return;
     box b = box_empty();
     for (int i = 0; i < 3; i++) {
       const laves__vec3 p = points[faces[f][i]];
@@ -171,8 +173,12 @@ static void set_box(laves__bvh_node *node, int i, const box *b) {
   }
 }
 
-/* Parts a range until there are four, or none is worth it. Returns how many. */
-static int part_in_four(item *items, range ranges[4], int depth) {
+/* Ranges of at least so many items take long enough to ask before each step whether to go on. */
+enum { LONG_RANGE = 1 << 12 };
+
+/* Parts a range until there are four, or none is worth it. Returns how many; 0 when cancelled. */
+static int part_in_four(const builder *b, range ranges[4], int depth) {
+  item *items = b->items;
   int count = 1;
   while (count < 4) {
     int largest = -1;
@@ -182,6 +188,7 @@ static int part_in_four(item *items, range ranges[4], int depth) {
     }
     if (largest < 0) break;
     range *r = &ranges[largest];
+    if (r->end - r->begin >= LONG_RANGE && laves__cancelled(b->context, "surface", 0.2)) return 0;
     const uint32_t middle = part(items, r->begin, r->end, depth);
     ranges[count] = (range){middle, r->end, items_box(items, middle, r->end)};
     *r = (range){r->begin, middle, items_box(items, r->begin, middle)};
@@ -190,13 +197,14 @@ static int part_in_four(item *items, range ranges[4], int depth) {
   return count;
 }
 
-/* Makes the node for [begin, end) and all below it; its index, or NONE when memory is short. */
+/* Makes the node for [begin, end) and all below it; its index, or NONE when memory is short or it is cancelled. */
 static uint32_t make_node(builder *b, range whole, int depth) {
   laves__bvh *bvh = b->bvh;
   if (!laves__grow(b->context, &bvh->nodes, &bvh->node_capacity, bvh->node_count + 1, sizeof *bvh->nodes)) return LAVES__NONE;
   const uint32_t index = (uint32_t)bvh->node_count++;
   range ranges[4] = {whole};
-  const int count = part_in_four(b->items, ranges, depth);
+  const int count = part_in_four(b, ranges, depth);
+  if (count == 0) return LAVES__NONE;
   laves__bvh_node node;
   const box nowhere = {{far_away, far_away, far_away}, {far_away, far_away, far_away}};
   for (int i = 0; i < 4; i++) {
@@ -245,11 +253,13 @@ bool laves__bvh_build(laves_context *context, const laves__vec3 *points, const u
   item *items = laves__alloc(context, face_count, sizeof *items);
   laves__triangle *triangles = laves__alloc(context, face_count, sizeof *triangles);
   if (!items || !triangles) goto clean_up;
-  make_items(bvh, points, faces, face_count, items);
+  make_items(context, bvh, points, faces, face_count, items);
+  if (laves__is_cancelled(context)) goto clean_up;
   builder b = {context, bvh, items};
   const range whole = {0, (uint32_t)face_count, items_box(items, 0, (uint32_t)face_count)};
   if (make_node(&b, whole, 0) == LAVES__NONE) goto clean_up;
   for (size_t slot = 0; slot < face_count; slot++) {
+    if (laves__cancelled_at(context, "surface", slot, face_count)) goto clean_up;
     const uint32_t *f = faces[items[slot].face];
     order[slot] = items[slot].face;
     triangles[slot] = laves__triangle_of(points[f[0]], points[f[1]], points[f[2]]);

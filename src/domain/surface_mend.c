@@ -49,9 +49,10 @@ static bool merge_points(const laves__surface *s, double tolerance, uint32_t *nu
   while (g.size < count) g.size *= 2;
   g.heads = laves__alloc(s->context, g.size, sizeof *g.heads);
   g.next = laves__alloc(s->context, count, sizeof *g.next);
-  const bool done = g.heads && g.next;
+  bool done = g.heads && g.next;
   if (done) memset(g.heads, 0xff, g.size * sizeof *g.heads);
   for (uint32_t p = 0; done && p < count; p++) {
+    done = !laves__cancelled_at(s->context, "surface", p, count);
     const laves__vec3 q = s->points[p];
     const uint32_t near = find_near(&g, s->points, number, q, tolerance);
     number[p] = near == LAVES__NONE ? p : near;

@@ -105,10 +105,11 @@ static void judge_edge(edges *e, const use *uses, size_t count) {
   s->across[uses[1].half] = uses[0].half;
 }
 
-/* uses, in lists by lesser point: starts[p] .. starts[p + 1]. */
-static void list_uses(const laves__surface *s, uint32_t *starts, use *uses) {
+/* uses, in lists by lesser point: starts[p] .. starts[p + 1]; false when cancelled. */
+static bool list_uses(const laves__surface *s, uint32_t *starts, use *uses) {
   const uint32_t half_count = (uint32_t)(3 * s->face_count);
   for (uint32_t h = 0; h < half_count; h++) {
+    if (laves__cancelled_at(s->context, "surface", h, half_count)) return false;
     const uint32_t u = edge_start(s, h), v = edge_end(s, h);
     starts[u < v ? u : v]++;
   }
@@ -118,13 +119,17 @@ static void list_uses(const laves__surface *s, uint32_t *starts, use *uses) {
     starts[p] = sum;
   }
   for (uint32_t h = half_count; h-- > 0;) {
+    if (laves__cancelled_at(s->context, "surface", h, half_count)) return false;
     const uint32_t u = edge_start(s, h), v = edge_end(s, h);
     uses[--starts[u < v ? u : v]] = (use){u < v ? v : u, h};
   }
+  return true;
 }
 
-static void judge_edges(edges *e, const uint32_t *starts, use *uses) {
+/* False when memory is short or it is cancelled. */
+static bool judge_edges(edges *e, const uint32_t *starts, use *uses) {
   for (size_t p = 0; p < e->s->point_count; p++) {
+    if (laves__cancelled_at(e->s->context, "surface", p, e->s->point_count)) return false;
     use *list = uses + starts[p];
     const size_t count = starts[p + 1] - starts[p];
     sort_uses(list, count);
@@ -134,6 +139,7 @@ static void judge_edges(edges *e, const uint32_t *starts, use *uses) {
       judge_edge(e, list + begin, end - begin);
     }
   }
+  return !e->short_of_memory;
 }
 
 /* ---- fans ---- */
@@ -176,15 +182,16 @@ static bool judge_points(laves__surface *s, laves_domain_info *info) {
   const size_t count = s->point_count;
   uint32_t *valence = laves__alloc_zeroed(s->context, count, sizeof *valence);
   uint32_t *any_face = laves__alloc(s->context, count, sizeof *any_face);
-  const bool done = valence && any_face;
+  bool done = valence && any_face;
   if (done) {
     for (size_t f = 0; f < s->face_count; f++)
       for (int i = 0; i < 3; i++) {
         valence[s->faces[f][i]]++;
         any_face[s->faces[f][i]] = (uint32_t)f;
       }
-    for (uint32_t p = 0; p < count; p++) {
+    for (uint32_t p = 0; done && p < count; p++) {
       bool closes = false;
+      done = !laves__cancelled_at(s->context, "surface", p, count);
       const bool single = valence[p] == 0 || one_fan(s, p, any_face[p], valence[p], &closes);
       if (!single) laves__note_defect(info, s->defects, LAVES_DEFECT_NONMANIFOLD_VERTEX, 1, &s->points[p]);
       s->doubtful_points[p] = !single || !closes;
@@ -205,11 +212,10 @@ bool laves__surface_topology(laves__surface *s, laves_domain_info *info) {
   if (!s->doubtful_points) s->doubtful_points = laves__alloc(s->context, s->point_capacity, sizeof *s->doubtful_points);
   if (!starts || !uses || !parent || !s->across || !s->doubtful_points) goto clean_up;
   for (uint32_t f = 0; f < s->face_count; f++) parent[f] = f;
-  list_uses(s, starts, uses);
+  if (!list_uses(s, starts, uses)) goto clean_up;
   edges e = {s, info, parent, true, false};
   s->rim_count = 0;
-  judge_edges(&e, starts, uses);
-  if (e.short_of_memory) goto clean_up;
+  if (!judge_edges(&e, starts, uses)) goto clean_up;
   info->closed = e.closed;
   info->component_count = 0;
   for (uint32_t f = 0; f < s->face_count; f++) info->component_count += parent[f] == f;
@@ -225,8 +231,7 @@ bool laves__surface_each_edge(const laves__surface *s, laves__edge_fn *fn, void 
   const size_t starts_count = s->point_count + 1, half_count = 3 * s->face_count;
   uint32_t *starts = laves__alloc_zeroed(s->context, starts_count, sizeof *starts);
   use *uses = laves__alloc(s->context, half_count, sizeof *uses);
-  const bool done = starts && uses;
-  if (done) list_uses(s, starts, uses);
+  const bool done = starts && uses && list_uses(s, starts, uses);
   for (size_t p = 0; done && p < s->point_count; p++) {
     use *list = uses + starts[p];
     const size_t count = starts[p + 1] - starts[p];
@@ -273,6 +278,7 @@ bool laves__surface_normals(laves__surface *s) {
   if (!s->face_normals || !s->point_normals) return false;
   memset(s->point_normals, 0, s->point_count * sizeof *s->point_normals);
   for (size_t f = 0; f < s->face_count; f++) {
+    if (laves__cancelled_at(s->context, "surface", f, s->face_count)) return false;
     const uint32_t *face = s->faces[f];
     const laves__vec3 p[3] = {s->points[face[0]], s->points[face[1]], s->points[face[2]]};
     const laves__vec3 cross = v3_cross(v3_sub(p[1], p[0]), v3_sub(p[2], p[0]));

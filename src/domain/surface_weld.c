@@ -31,7 +31,9 @@ static bool find_equal_points(laves__surface *s, const laves__vec3 *points, cons
   uint32_t *table = laves__alloc(s->context, slots, sizeof *table);
   if (!table) return false;
   memset(table, 0xff, slots * sizeof *table);
-  for (size_t i = 0; i < count; i++) {
+  bool cancelled = false;
+  for (size_t i = 0; i < count && !cancelled; i++) {
+    cancelled = laves__cancelled_at(s->context, "surface", i, count);
     first[i] = (uint32_t)i;
     if (!used[i]) continue;
     size_t slot = hash_point(points[i]) & (slots - 1);
@@ -44,13 +46,17 @@ static bool find_equal_points(laves__surface *s, const laves__vec3 *points, cons
     }
   }
   laves__free(s->context, table, slots, sizeof *table);
-  return true;
+  return !cancelled;
 }
 
-static void mark_used(const laves__surface_input *input, bool *used) {
+/* False when cancelled. */
+static bool mark_used(laves_context *context, const laves__surface_input *input, bool *used) {
   memset(used, 0, input->point_count * sizeof *used);
-  for (size_t f = 0; f < input->triangle_count; f++)
+  for (size_t f = 0; f < input->triangle_count; f++) {
+    if (laves__cancelled_at(context, "surface", f, input->triangle_count)) return false;
     for (int i = 0; i < 3; i++) used[input->triangles[f][i]] = true;
+  }
+  return true;
 }
 
 /* Gives the points that are kept their new numbers, in `first` itself, and stores them. */
@@ -58,6 +64,7 @@ static void number_points(laves__surface *s, const laves__vec3 *points, const bo
                           laves_domain_info *info) {
   s->point_count = 0;
   for (size_t i = 0; i < count; i++) {
+    if (laves__cancelled_at(s->context, "surface", i, count)) return;
     if (!used[i]) {
       laves__note_defect(info, s->defects, LAVES_DEFECT_UNUSED_POINT, 1, &points[i]);
     } else if (first[i] == i) {
@@ -73,6 +80,7 @@ static void copy_faces(laves__surface *s, const laves__surface_input *input, con
   LAVES_ASSERT(!s->tags || input->tags);
   s->face_count = 0;
   for (size_t f = 0; f < input->triangle_count; f++) {
+    if (laves__cancelled_at(s->context, "surface", f, input->triangle_count)) return;
     const uint32_t *t = input->triangles[f];
     const uint32_t a = number[t[0]], b = number[t[1]], c = number[t[2]];
     if (a == b || b == c || c == a) {
@@ -122,12 +130,13 @@ static void mark_repeats(key *keys, size_t count, bool *repeats) {
     }
 }
 
-/* Faces are laid beside their least point, so that repeats stand in the same short list. */
+/* Faces are laid beside their least point, so that repeats stand in the same short list. False when memory is short or it is
+ * cancelled. */
 static bool find_repeats(laves__surface *s, bool any_direction, bool *repeats) {
   const size_t starts_count = s->point_count + 1;
   uint32_t *starts = laves__alloc_zeroed(s->context, starts_count, sizeof *starts);
   key *keys = laves__alloc(s->context, s->face_count, sizeof *keys);
-  const bool done = starts && keys;
+  bool done = starts && keys;
   if (done) {
     memset(repeats, 0, s->face_count * sizeof *repeats);
     for (size_t f = 0; f < s->face_count; f++) starts[face_key(s->faces[f], 0).low]++;
@@ -141,7 +150,8 @@ static bool find_repeats(laves__surface *s, bool any_direction, bool *repeats) {
       if (any_direction) k.odd = false;
       keys[--starts[k.low]] = k;
     }
-    for (size_t p = 0; p < s->point_count; p++) mark_repeats(&keys[starts[p]], starts[p + 1] - starts[p], repeats);
+    done = !laves__cancelled(s->context, "surface", 0.1);
+    for (size_t p = 0; done && p < s->point_count; p++) mark_repeats(&keys[starts[p]], starts[p + 1] - starts[p], repeats);
   }
   laves__free(s->context, starts, starts_count, sizeof *starts);
   laves__free(s->context, keys, s->face_count, sizeof *keys);
@@ -192,13 +202,15 @@ bool laves__surface_weld(laves__surface *s, const laves__surface_input *input, l
     s->tags = laves__alloc(context, input->triangle_count, sizeof *s->tags);
     if (!s->tags) goto clean_up;
   }
-  /* Adding zero turns -0 into 0. */
-  for (size_t i = 0; i < count; i++) points[i] = v3_add(v3_sub(input->points[i], origin), v3(0, 0, 0));
-  mark_used(input, used);
+  for (size_t i = 0; i < count; i++) {
+    if (laves__cancelled_at(context, "surface", i, count)) goto clean_up;
+    points[i] = v3_add(v3_sub(input->points[i], origin), v3(0, 0, 0)); /* adding zero turns -0 into 0 */
+  }
+  if (!mark_used(context, input, used)) goto clean_up;
   if (!find_equal_points(s, points, used, count, first, info)) goto clean_up;
   number_points(s, points, used, count, first, info);
   copy_faces(s, input, first, info);
-  done = laves__surface_drop_repeats(s, false, info);
+  done = !laves__cancelled(context, "surface", 0.1) && laves__surface_drop_repeats(s, false, info);
 clean_up:
   laves__free(context, points, count, sizeof *points);
   laves__free(context, used, count, sizeof *used);

@@ -160,10 +160,17 @@ static void take(offers *o) {
 
 bool laves__cover_creases(laves__keeping *k) {
   offers o = {.k = k, .memory = true};
-  for (size_t v = 0; v < k->rim.vertex_count; v++) offer_edges(&o, (int32_t)v, true);
-  while (o.count > 0 && o.memory) take(&o);
+  bool cancelled = false;
+  for (size_t v = 0; v < k->rim.vertex_count && !cancelled; v++) {
+    offer_edges(&o, (int32_t)v, true);
+    cancelled = laves__cancelled_at(k->context, "features", v, k->rim.vertex_count);
+  }
+  for (size_t step = 0; o.count > 0 && o.memory && !cancelled; step++) {
+    take(&o);
+    cancelled = laves__cancelled_at(k->context, "features", step, step + o.count);
+  }
   laves__free(k->context, o.item, o.capacity, sizeof *o.item);
-  return o.memory;
+  return o.memory && !cancelled;
 }
 
 /* ---- the way back ---- */
@@ -189,16 +196,20 @@ bool laves__prune_creases(laves__keeping *k) {
   size_t count = 0, next = 0;
   for (size_t v = 0; v < k->rim.vertex_count; v++) count += k->layer->hold[v].kind == LAVES__HOLD_CREASE;
   uint64_t *key = laves__alloc(k->context, count, sizeof *key), *scratch = laves__alloc(k->context, count, sizeof *scratch);
-  const bool done = key && scratch;
+  bool done = key && scratch;
   for (size_t v = 0; done && v < k->rim.vertex_count; v++) {
     if (k->layer->hold[v].kind != LAVES__HOLD_CREASE) continue;
+    done = !laves__cancelled_at(k->context, "features", next, count);
     laves__vec3 place;
     const bool found = laves__held_place(k, (int32_t)v, k->layer->hold[v], &place);
     const double way = found ? v3_distance(place, k->start[v]) / laves__layer_scale(k->layer, (int32_t)v) : reach;
     key[next++] = laves__sort_key(way, (uint32_t)v);
   }
   if (done) laves__sort_u64(key, scratch, count);
-  for (size_t i = count; done && i-- > 0;) give_back(k, (int32_t)(uint32_t)key[i]);
+  for (size_t i = count; done && i-- > 0;) {
+    give_back(k, (int32_t)(uint32_t)key[i]);
+    done = !laves__cancelled_at(k->context, "features", i, count);
+  }
   laves__free(k->context, key, count, sizeof *key);
   laves__free(k->context, scratch, count, sizeof *scratch);
   return done;

@@ -134,7 +134,7 @@ void laves__mend_faces(laves__keeping *k) {
   bool again = true;
   for (int round = 0; round < ROUNDS && again; round++) {
     again = false;
-    for (uint32_t f = 0; f < k->rim.face_count; f++)
+    for (uint32_t f = 0; f < k->rim.face_count && !laves__cancelled_at(k->context, "features", f, k->rim.face_count); f++)
       while (!is_legal(k, f) && (relabel_face(k, f) || move_corner_near(k, f))) again = true;
   }
 }

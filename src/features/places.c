@@ -38,6 +38,7 @@ static void spread(const laves__keeping *k, int32_t corner) {
 static void find_places(const laves__keeping *k) {
   laves__layer *layer = k->layer;
   for (size_t v = 0; v < k->rim.vertex_count; v++) {
+    if (laves__cancelled_at(k->context, "features", v, k->rim.vertex_count)) return;
     const laves__hold hold = layer->hold[v];
     const bool stays = hold.kind == LAVES__HOLD_SURFACE || (hold.kind == LAVES__HOLD_PATCH && hold.id == k->start_patch[v]);
     if (stays || k->rim.first[v] == k->rim.first[v + 1]) continue;
@@ -69,7 +70,7 @@ static void draw_back(const laves__keeping *k) {
   bool bad = true;
   for (int round = 0; bad; round++) {
     bad = false;
-    for (size_t t = 0; t < layer->tet_count; t++) {
+    for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(k->context, "features", t, layer->tet_count); t++) {
       if (layer->tet[t][0] < 0 || is_positive(layer, t)) continue;
       for (int c = 0; c < 4; c++) {
         const int32_t v = layer->tet[t][c];

@@ -59,9 +59,11 @@ static laves_result mark_candidates(laves__sites *sites, laves_error *error) {
   const size_t corners = sites->corner.count;
   uint8_t *leaves = laves__alloc_zeroed(context, corners, 1);
   int32_t *side = laves__alloc(context, corners, sizeof *side);
-  const bool enough = leaves && side;
-  for (size_t i = 0; enough && i < tree->leaf_count; i++) {
+  laves_result result = LAVES_OK;
+  if (!leaves || !side) result = laves__fail_memory(context, error);
+  for (size_t i = 0; result == LAVES_OK && i < tree->leaf_count; i++) {
     const laves__node *n = &tree->node[tree->leaf[i]];
+    if (laves__cancelled_at(context, "background", i, tree->leaf_count)) result = laves__fail_cancelled(error);
     for (int k = 0; k < 8; k++) {
       const int32_t corner = laves__key_find(&sites->corner, corner_key(n, k));
       if (leaves[corner] == 0) side[corner] = n->side;
@@ -69,10 +71,13 @@ static laves_result mark_candidates(laves__sites *sites, laves_error *error) {
     }
     sites->gone[corners + i] = n->even && laves__site_look(sites, corners + i).colour >= 2;
   }
-  for (size_t i = 0; enough && i < corners; i++) sites->gone[i] = leaves[i] == 8 && laves__site_look(sites, i).colour >= 2;
+  for (size_t i = 0; result == LAVES_OK && i < corners; i++) {
+    sites->gone[i] = leaves[i] == 8 && laves__site_look(sites, i).colour >= 2;
+    if (laves__cancelled_at(context, "background", i, corners)) result = laves__fail_cancelled(error);
+  }
   laves__free(context, side, corners, sizeof *side);
   laves__free(context, leaves, corners, 1);
-  return enough ? LAVES_OK : laves__fail_memory(context, error);
+  return result;
 }
 
 static bool is_lonely(const laves__sites *sites, size_t site) {
@@ -85,13 +90,14 @@ static bool is_lonely(const laves__sites *sites, size_t site) {
 /* Lets lonely sites stay, and looks at the partners of each once more. */
 static laves_result keep_lonely(laves__sites *sites, laves_error *error) {
   size_t *list = NULL, capacity = 0, count = 0;
-  bool memory = true;
+  bool memory = true, cancelled = false;
   for (size_t site = 0; memory && site < sites->site_count; site++) {
     if (!sites->gone[site]) continue;
     memory = laves__grow(sites->context, &list, &capacity, count + 1, sizeof *list);
     if (memory) list[count++] = site;
   }
-  while (memory && count > 0) {
+  for (size_t step = 0; memory && !cancelled && count > 0; step++) {
+    cancelled = laves__cancelled_at(sites->context, "background", step, sites->site_count + step);
     const size_t site = list[--count];
     if (!sites->gone[site] || !is_lonely(sites, site)) continue;
     sites->gone[site] = false;
@@ -100,7 +106,7 @@ static laves_result keep_lonely(laves__sites *sites, laves_error *error) {
     for (int bond = 0; memory && bond < 4; bond++) list[count++] = laves__bond_end(sites, &view, site, bond);
   }
   laves__free(sites->context, list, capacity, sizeof *list);
-  return memory ? LAVES_OK : laves__fail_memory(sites->context, error);
+  return memory && !cancelled ? LAVES_OK : laves__fail_memory(sites->context, error);
 }
 
 laves_result laves__sites_make(const laves__octree *tree, laves__sites *sites, laves_error *error) {

@@ -68,11 +68,12 @@ static void find_shares(void *user, size_t begin, size_t end, int worker) {
 }
 
 laves_result laves__graded_estimate(const laves__frame *frame, const laves__demand *demand, laves_context *context, double *tets,
-                                    double *vertices, laves_error *error) {
+                                    double *vertices, size_t *leaves, laves_error *error) {
   laves__octree tree;
   estimate e = {frame, &tree, NULL};
   laves_result result = laves__octree_build(frame, demand, context, &tree, error);
   *tets = *vertices = 0;
+  *leaves = tree.leaf_count;
   if (result != LAVES_OK) goto cleanup;
   e.share = laves__alloc(context, tree.leaf_count, sizeof *e.share);
   if (!e.share) {

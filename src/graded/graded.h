@@ -17,12 +17,13 @@
 #include "graded/octree.h"
 
 /* Fills an empty graph, with its lists, and the octree from which it comes; both to be freed by the caller, also after an
- * error. LAVES_ERROR_OPTION when the field asks for too much, LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
+ * error. LAVES_ERROR_OPTION when the field asks for too much, LAVES_ERROR_MEMORY (before more than the octree is made, where what
+ * comes of it can't be within the limit), LAVES_ERROR_CANCELLED. */
 laves_result laves__graded_background(const laves__frame *frame, const laves__demand *demand, laves_context *context,
                                       laves__octree *tree, laves__graph *graph, laves_error *error);
 
-/* About how many tets and vertices the mesh will have, from the leaves alone. */
+/* About how many tets and vertices the mesh will have, from the leaves alone, and how many those are. */
 laves_result laves__graded_estimate(const laves__frame *frame, const laves__demand *demand, laves_context *context, double *tets,
-                                    double *vertices, laves_error *error);
+                                    double *vertices, size_t *leaves, laves_error *error);
 
 #endif

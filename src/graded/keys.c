@@ -33,6 +33,7 @@ bool laves__key_table_make(laves_context *context, uint64_t *keys, size_t count,
   t->slot_count = slots;
   memset(t->slot, -1, slots * sizeof *t->slot);
   for (size_t i = 0; i < t->count; i++) {
+    if (laves__cancelled_at(context, "background", i, t->count)) return false;
     size_t s = first_slot(t, t->key[i]);
     while (t->slot[s] >= 0) s = (s + 1) & (slots - 1);
     t->slot[s] = (int32_t)i;

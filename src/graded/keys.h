@@ -41,8 +41,8 @@ typedef struct laves__key_table {
   size_t slot_count;
 } laves__key_table;
 
-/* Takes `keys` over (allocated with `capacity`), sorts them and leaves each once; false when memory is short, with the
- * keys taken over all the same. */
+/* Takes `keys` over (allocated with `capacity`), sorts them and leaves each once; false when memory is short or it is cancelled,
+ * with the keys taken over all the same. */
 bool laves__key_table_make(laves_context *context, uint64_t *keys, size_t count, size_t capacity, laves__key_table *table);
 /* The number of a key, or -1. */
 int32_t laves__key_find(const laves__key_table *table, uint64_t key);

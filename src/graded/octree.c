@@ -8,6 +8,7 @@
 
 #include "background/c15_table.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static const double roundness = 1.8;
@@ -146,7 +147,37 @@ static void sound(void *user, size_t begin, size_t end, int worker) {
   }
 }
 
-static laves_result too_many(laves_error *error) {
+double laves__graded_bytes(size_t leaves) {
+  static const double at_start = 2e6, per_leaf = 1370;
+  return at_start + per_leaf * (double)leaves;
+}
+
+/* Of the children of a cube one at least is not outside, and becomes a leaf or several. */
+static size_t leaves_at_least(const laves__octree *tree) { return tree->node_count / 8; }
+
+/* What is still to be taken when there are so many leaves. */
+static double bytes_to_come(const laves__octree *tree, size_t leaves) {
+  return fmax(laves__graded_bytes(leaves) - (double)tree->node_capacity * sizeof *tree->node, 0);
+}
+
+/* Whether the nodes are more than there may be, or than will fit into memory with what is made of them. */
+static bool is_too_many(const laves__octree *tree) {
+  return tree->node_count > NODES_MAX || !laves__may_fit(tree->context, bytes_to_come(tree, leaves_at_least(tree)));
+}
+
+static laves_result fail_room(const laves__octree *tree, size_t leaves, laves_error *error) {
+  static const double tets_per_leaf = 14;
+  const double bytes = bytes_to_come(tree, leaves), tets = tets_per_leaf * (double)leaves;
+  char what[120], remedy[160];
+  snprintf(what, sizeof what, "what the sizes ask for (%s%.2g tetrahedra)", leaves == tree->leaf_count ? "about " : "more than ",
+           tets);
+  snprintf(remedy, sizeof remedy, "raise it, choose larger sizes, or have them scaled to a count: %.1g tetrahedra fit",
+           0.8 * tets * fmin(1, laves__room(tree->context) / bytes));
+  return laves__fail_room(tree->context, bytes, what, remedy, error);
+}
+
+static laves_result too_many(const laves__octree *tree, laves_error *error) {
+  if (tree->node_count <= NODES_MAX) return fail_room(tree, leaves_at_least(tree), error);
   return laves__fail(error, LAVES_ERROR_OPTION, "the sizes ask for more than %d cubes; choose larger ones", NODES_MAX);
 }
 
@@ -158,7 +189,7 @@ static laves_result refine_by_field(const laves__frame *frame, const laves__dema
     for (size_t i = s.first; i < end; i++) {
       if (tree->node[i].outside || !is_too_large(tree, &tree->node[i], roundness * tree->node[i].size)) continue;
       if (!split(tree, (int32_t)i)) return laves__fail_memory(tree->context, error);
-      if (tree->node_count > NODES_MAX) return too_many(error);
+      if (is_too_many(tree)) return too_many(tree, error);
     }
     s.first = end;
     end = tree->node_count;
@@ -203,7 +234,7 @@ static laves_result refine_by_samples(const laves__frame *frame, const laves__de
       memory = refine_at(
           frame, tree, v3(p.x + (k & 1 ? reach : -reach), p.y + (k & 2 ? reach : -reach), p.z + (k & 4 ? reach : -reach)), size);
     if (!memory) return laves__fail_memory(tree->context, error);
-    if (tree->node_count > NODES_MAX) return too_many(error);
+    if (is_too_many(tree)) return too_many(tree, error);
     if (i % 256 == 0 && laves__cancelled(tree->context, "background", 0)) return laves__fail_cancelled(error);
   }
   return LAVES_OK;
@@ -324,7 +355,7 @@ static laves_result limit(const laves__frame *frame, const laves__demand *demand
     const entry e = pop(&f);
     if (tree->node[e.node].child >= 0 || tree->node[e.node].size != e.size) continue;
     for (int k = 0; memory && k < PROBES; k++) memory = carry(&f, e.node, probe[k], probe);
-    if (tree->node_count > NODES_MAX) result = too_many(error);
+    if (is_too_many(tree)) result = too_many(tree, error);
     if (step % 1024 == 0 && laves__cancelled(tree->context, "background", 0)) result = laves__fail_cancelled(error);
   }
   laves__free(tree->context, f.heap, f.capacity, sizeof *f.heap);
@@ -378,6 +409,7 @@ laves_result laves__octree_build(const laves__frame *frame, const laves__demand 
   if (result == LAVES_OK) result = limit(frame, demand, tree, error);
   if (result != LAVES_OK) return result;
   tree->leaf_count = walk(tree, 0, NULL, 0);
+  if (!laves__may_fit(context, bytes_to_come(tree, tree->leaf_count))) return fail_room(tree, tree->leaf_count, error);
   tree->leaf = laves__alloc(context, tree->leaf_count, sizeof *tree->leaf);
   if (!tree->leaf) return laves__fail_memory(context, error);
   walk(tree, 0, tree->leaf, 0);

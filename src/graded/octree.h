@@ -43,6 +43,9 @@ typedef struct laves__octree {
   size_t leaf_count;
 } laves__octree;
 
+/* Bytes at the peak of making a mesh from so many leaves, by measurement: what the octree takes is in it. */
+double laves__graded_bytes(size_t leaves);
+
 /* LAVES_ERROR_OPTION when the field asks for more than can be indexed; LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
 laves_result laves__octree_build(const laves__frame *frame, const laves__demand *demand, laves_context *context,
                                  laves__octree *tree, laves_error *error);

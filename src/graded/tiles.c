@@ -196,6 +196,7 @@ static void collect(const filling *f, size_t leaf, leaf_tets *list) {
 static size_t count_midpoints(const laves__sites *sites, uint64_t *keys) {
   size_t count = 0;
   for (size_t site = 0; site < sites->site_count; site++) {
+    if (laves__cancelled_at(sites->context, "background", site, sites->site_count)) return 0;
     if (!sites->gone[site]) continue;
     const laves__site_view view = laves__site_look(sites, site);
     if (view.colour != 2) continue;

@@ -480,6 +480,7 @@ cleanup:
 size_t laves__improve_outside(const laves__window *window, const laves__layer *layer) {
   const laves__measure m = laves__measure_of(window);
   size_t count = 0;
-  for (size_t t = 0; t < layer->tet_count; t++) count += layer->tet[t][0] >= 0 && laves__layer_quality(&m, layer, (int32_t)t) < 1;
+  for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(layer->context, "improve", t, layer->tet_count); t++)
+    count += layer->tet[t][0] >= 0 && laves__layer_quality(&m, layer, (int32_t)t) < 1;
   return count;
 }

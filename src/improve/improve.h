@@ -35,7 +35,7 @@ typedef struct laves__window {
  * LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error);
 
-/* How many tets of the layer are outside a window. */
+/* How many tets of the layer are outside a window; too few when cancelled meanwhile. */
 size_t laves__improve_outside(const laves__window *window, const laves__layer *layer);
 
 #endif

@@ -17,7 +17,7 @@ static bool is_outside(const laves__measure *m, const laves__layer *layer, size_
 
 size_t laves__mark_forced(const laves__frame *frame, double sharper_than, const laves__layer *layer, bool *forced) {
   size_t count = 0;
-  for (size_t t = 0; t < layer->tet_count; t++) {
+  for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(layer->context, "improve", t, layer->tet_count); t++) {
     forced[t] = layer->hold && layer->tet[t][0] >= 0 && laves__fixed_edges(frame->features, sharper_than, layer, (int32_t)t);
     count += forced[t];
   }
@@ -47,7 +47,7 @@ static size_t release_tet(laves__layer *layer, size_t t, laves__release what) {
 size_t laves__release_features(const laves__frame *frame, const laves__window *window, laves__release what, laves__layer *layer) {
   const laves__measure m = measure_for(frame, window, layer);
   size_t count = 0;
-  for (size_t t = 0; t < layer->tet_count; t++) {
+  for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(layer->context, "improve", t, layer->tet_count); t++) {
     if (!is_outside(&m, layer, t)) continue;
     count += release_tet(layer, t, what);
     for (int k = 0; k < 4 && what == LAVES__RELEASE_AROUND; k++) {

@@ -15,7 +15,7 @@ typedef enum laves__release {
 } laves__release;
 
 /* Frees boundary vertices of tets outside a window from their creases and corners: they then move anywhere on the surface. Angles
- * that the input fixes do not count. Returns how many were freed. */
+ * that the input fixes do not count. Returns how many were freed. Like the next it ends early when cancelled. */
 size_t laves__release_features(const laves__frame *frame, const laves__window *window, laves__release what, laves__layer *layer);
 
 /* Tets at creases sharper than an angle, which fixes theirs: forced[layer->tet_count]. Returns how many there are. */

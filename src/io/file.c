@@ -1,5 +1,5 @@
 /* Whole files in.  The file is opened without waiting (a pipe without a writer would hold us for ever), judged by what was
- * opened rather than by its name, and read in one piece. */
+ * opened rather than by its name, and is read into one block. */
 #include "io/file.h"
 
 #include <errno.h>
@@ -7,6 +7,8 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+enum { PIECE_BYTES = 4 << 20 };
 
 /* What a path that is not a regular file is called. */
 static const char *kind_of(mode_t mode) {
@@ -19,10 +21,11 @@ static laves_result fail_errno(laves_error *error, const char *path, const char 
   return laves__fail(error, LAVES_ERROR_INPUT, "%s: cannot %s the file: %s", path, what, reason);
 }
 
-/* Fills `bytes` from the file, which must hold `length` of them still. */
-static laves_result read_all(int file, const char *path, char *bytes, size_t length, laves_error *error) {
+/* Fills `bytes` from the file, which must hold `length` of them still, piece by piece: a disk may be slow. */
+static laves_result read_all(laves_context *context, int file, const char *path, char *bytes, size_t length, laves_error *error) {
   for (size_t done = 0; done < length;) {
-    const ssize_t got = read(file, bytes + done, length - done);
+    if (laves__cancelled(context, "read", 0)) return laves__fail_cancelled(error);
+    const ssize_t got = read(file, bytes + done, length - done < PIECE_BYTES ? length - done : PIECE_BYTES);
     if (got < 0 && errno == EINTR) {
       continue;
     }
@@ -57,7 +60,7 @@ laves_result laves__file_read(laves_context *context, const char *path, char **b
   }
   *length = (size_t)status.st_size;
   *bytes = laves__alloc(context, *length + 1, 1);
-  result = *bytes == NULL ? laves__fail_memory(context, error) : read_all(file, path, *bytes, *length, error);
+  result = *bytes == NULL ? laves__fail_memory(context, error) : read_all(context, file, path, *bytes, *length, error);
   if (result != LAVES_OK) {
     laves__free(context, *bytes, *length + 1, 1);
     *bytes = NULL;

@@ -137,10 +137,13 @@ void laves__mesh_input_free(laves__mesh_input *input) {
 
 static laves_result check_corners(const laves__mesh_input *input, const char *what, const int32_t *corners, size_t count,
                                   int per_item, laves_error *error) {
-  for (size_t i = 0; i < count * (size_t)per_item; i++)
+  const size_t all = count * (size_t)per_item;
+  for (size_t i = 0; i < all; i++) {
+    if (laves__cancelled_at(input->context, "read", i, all)) return laves__fail_cancelled(error);
     if (corners[i] < 0 || (size_t)corners[i] >= input->point_count)
       return laves__mesh_input_fail(input, error, "%s %zu uses vertex %ld, but there are %zu (counted from 1)", what,
                                     i / (size_t)per_item + 1, (long)corners[i] + 1, input->point_count);
+  }
   return LAVES_OK;
 }
 
@@ -183,7 +186,7 @@ static bool drop_unused(laves__mesh_input *input) {
 
 static void turn_if_all_negative(laves__mesh_input *input) {
   size_t negative = 0;
-  for (size_t i = 0; i < input->tet_count; i++) {
+  for (size_t i = 0; i < input->tet_count && !laves__cancelled_at(input->context, "read", i, input->tet_count); i++) {
     const int32_t *t = input->tets[i];
     const double det = v3_det(input->points[t[0]], input->points[t[1]], input->points[t[2]], input->points[t[3]]);
     if (det > 0) return;
@@ -250,13 +253,13 @@ static bool transfer_tags(const laves__mesh_input *input, laves_mesh *mesh) {
   if (known && tags) {
     for (size_t i = 0; i < input->face_count; i++) known[i] = make_tagged_face(input->faces[i], input->face_tags[i], i);
     qsort(known, input->face_count, sizeof *known, compare_faces);
-    for (size_t i = 0; i < mesh->face_count; i++) {
+    for (size_t i = 0; i < mesh->face_count && !laves__cancelled_at(input->context, "read", i, mesh->face_count); i++) {
       const tagged_face wanted = make_tagged_face(mesh->faces[i], 0, 0);
       const tagged_face *found = find_face(known, input->face_count, &wanted);
       tags[i] = found ? found->tag : 0;
     }
   }
-  const bool done = known && tags;
+  const bool done = known && tags && !laves__is_cancelled(input->context);
   laves__free(input->context, known, input->face_count, sizeof *known);
   if (done && !all_one(tags, mesh->face_count)) {
     mesh->face_tags = tags;
@@ -271,6 +274,7 @@ laves_result laves__mesh_input_finish(laves__mesh_input *input, laves_mesh **mes
   if (result != LAVES_OK) return result;
   if (input->higher_order && !drop_unused(input)) return laves__fail_memory(input->context, error);
   turn_if_all_negative(input);
+  if (laves__is_cancelled(input->context)) return laves__fail_cancelled(error);
   const int32_t *regions = all_one(input->regions, input->tet_count) ? NULL : input->regions;
   laves_mesh *made = NULL;
   result = laves_mesh_from_arrays(input->context, &input->points->x, input->point_count, *input->tets, input->tet_count, regions,

@@ -1,12 +1,14 @@
 /* A file being written: it appears whole or not at all.
  *
- * The temporary file has a short name of its own (not the target's with something added, which could get too long) and is
- * made with O_EXCL, so two programs writing to one folder do not meet. A target that is a symbolic link is followed, and an
- * existing target's permissions are kept. Nothing is synced to the disk: a crash of the machine is not what "whole or not at
- * all" is about.
+ * Where the file system can (Linux's O_TMPFILE) the temporary file has no name until it is complete, so that nothing of it is
+ * left when the program is killed. Else, and when it is published, it has a short name of its own (not the target's with
+ * something added, which could get too long), which no other file has, so two programs writing to one folder do not meet. A
+ * target that is a symbolic link is followed, and an existing target's permissions are kept. Nothing is synced to the disk: a
+ * crash of the machine is not what "whole or not at all" is about.
  *
  * Items are formatted by all threads in waves: every block of a wave has a slot of its own in one scratch block, and the
  * slots are written in order when the wave is done, so the bytes do not depend on the number of threads. */
+#define _GNU_SOURCE /* O_TMPFILE */
 #include "io/output.h"
 
 #include <errno.h>
@@ -77,23 +79,61 @@ static void find_target(laves__output *out, const char *path, mode_t *mode) {
     fail_system(out, "find", path);
 }
 
-static void open_temporary(laves__output *out, mode_t mode) {
+/* Length of the target's path up to and with the last slash. */
+static int folder_length(const laves__output *out) {
   const char *slash = strrchr(out->target, '/');
-  const int folder = slash ? (int)(slash - out->target) + 1 : 0;
+  return slash ? (int)(slash - out->target) + 1 : 0;
+}
+
+/* Makes a name for the temporary file, by `make`, which sets errno and returns false where it can't. */
+static void name_temporary(laves__output *out, bool (*make)(laves__output *out)) {
   for (int i = 0; i < TEMPORARY_TRIES; i++) {
-    const int length = snprintf(out->temporary, sizeof out->temporary, "%.*s.laves-%ld-%d%s", folder, out->target, (long)getpid(),
-                                i, temporary_ending);
+    const int length = snprintf(out->temporary, sizeof out->temporary, "%.*s.laves-%ld-%d%s", folder_length(out), out->target,
+                                (long)getpid(), i, temporary_ending);
     if (length >= (int)sizeof out->temporary) break;
-    out->file = open(out->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (out->file >= 0) {
-      if (mode) (void)fchmod(out->file, mode);
-      return;
-    }
+    if (make(out)) return;
     if (errno != EEXIST) break;
   }
   laves__output_fail(out, LAVES_ERROR_WRITE, "cannot write '%s': no file can be made in its folder: %s", out->target,
                      system_text());
   out->temporary[0] = 0;
+}
+
+static bool make_file(laves__output *out) {
+  out->file = open(out->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  return out->file >= 0;
+}
+
+#ifdef O_TMPFILE
+static void path_of_descriptor(const laves__output *out, char path[40]) { snprintf(path, 40, "/proc/self/fd/%d", out->file); }
+
+static bool link_file(laves__output *out) {
+  char path[40];
+  path_of_descriptor(out, path);
+  return linkat(AT_FDCWD, path, AT_FDCWD, out->temporary, AT_SYMLINK_FOLLOW) == 0;
+}
+
+/* Opens a file without a name; only where it can be given one later, for which /proc is needed. */
+static void open_nameless(laves__output *out) {
+  char path[PATH_MAX];
+  const int length = folder_length(out);
+  snprintf(path, sizeof path, "%.*s", length ? length : 1, length ? out->target : ".");
+  out->file = open(path, O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (out->file < 0) return;
+  path_of_descriptor(out, path);
+  if (access(path, F_OK) == 0) return;
+  close(out->file);
+  out->file = -1;
+}
+#else
+static bool link_file(laves__output *out) { return out->file < 0; } /* never asked: all files have names */
+static void open_nameless(laves__output *out) { out->file = -1; }
+#endif
+
+static void open_temporary(laves__output *out, mode_t mode) {
+  open_nameless(out);
+  if (out->file < 0) name_temporary(out, make_file);
+  if (out->file >= 0 && mode) (void)fchmod(out->file, mode);
 }
 
 laves_result laves__output_open(laves__output *out, laves_context *context, const char *path) {
@@ -207,6 +247,7 @@ void laves__output_items(laves__output *out, size_t count, size_t item_bytes, la
 
 laves_result laves__output_complete(laves__output *out) {
   if (out->error.result == LAVES_OK) flush(out);
+  if (out->error.result == LAVES_OK && !out->direct && !out->temporary[0]) name_temporary(out, link_file);
   if (out->file >= 0 && close(out->file) != 0) fail_system(out, "write", out->target);
   out->file = -1;
   return out->error.result;

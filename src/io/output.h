@@ -2,9 +2,10 @@
  *
  *   laves__output_open -> laves__output_bytes, _items ... -> laves__output_complete -> laves__output_publish
  *
- * Bytes go to a temporary file in the target's folder, which publishing renames to the target. Targets that are not regular
- * files (devices, pipes) and open descriptors (/dev/stdout) are written directly. The first failure sticks: later calls do
- * nothing and the last one returns it, so writers need not look in between. laves__output_discard() ends it at any point. */
+ * Bytes go to a temporary file in the target's folder, without a name where that can be, which publishing renames to the target.
+ * Targets that are not regular files (devices, pipes) and open descriptors (/dev/stdout) are written directly. The first failure
+ * sticks: later calls do nothing and the last one returns it, so writers need not look in between. laves__output_discard() ends
+ * it at any point. */
 #ifndef LAVES_IO_OUTPUT_H
 #define LAVES_IO_OUTPUT_H
 
@@ -23,7 +24,7 @@ typedef struct laves__output {
   double expected;  /* about how many bytes there will be, for progress; set by the writer */
   double prepared;  /* the fraction of the work done before the first byte; set by the writer */
   char target[PATH_MAX];
-  char temporary[PATH_MAX]; /* empty: none on disk */
+  char temporary[PATH_MAX]; /* empty: no file has a name yet */
   char kept[PATH_MAX];      /* of several files that are published together: the older file's second name; empty: none */
   bool can_undo;            /* their publishing */
 } laves__output;
@@ -42,7 +43,7 @@ void laves__output_items(laves__output *out, size_t count, size_t item_bytes, la
 void laves__output_fail(laves__output *out, laves_result result, const char *format, ...) __attribute__((format(printf, 3, 4)));
 void laves__output_fail_memory(laves__output *out);
 
-/* Flushes and closes the temporary file. */
+/* Flushes, names and closes the temporary file. */
 laves_result laves__output_complete(laves__output *out);
 /* Renames it to the target. */
 laves_result laves__output_publish(laves__output *out);

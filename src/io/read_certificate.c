@@ -283,6 +283,7 @@ laves_result laves_certificate_read(laves_context *context, const char *path, la
   char *bytes;
   size_t length;
   laves_result result = refuse_large(path, error);
+  laves__progress_reset(context);
   if (result == LAVES_OK) result = laves__file_read(context, path, &bytes, &length, error);
   if (result != LAVES_OK) return result;
   result = laves__certificate_parse(context, bytes, length, path, certificate, error);

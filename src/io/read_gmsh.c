@@ -516,6 +516,7 @@ static laves_result read_section(reader *r, laves__word name, laves_error *error
 
 static laves_result resolve(reader *r, const int64_t *nodes, int32_t *corners, size_t count, laves_error *error) {
   for (size_t i = 0; i < count; i++) {
+    if (laves__cancelled_at(r->input->context, "read", i, count)) return laves__fail_cancelled(error);
     const numbered *found = table_find(&r->nodes, nodes[i]);
     if (!found)
       return laves__mesh_input_fail(r->input, error, "an element uses node %lld, which the file does not have",

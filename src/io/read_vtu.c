@@ -18,6 +18,8 @@
  * there must be room left for rounding) and for plain bytes. */
 enum { COMPRESSED_LIMIT = 1032, PLAIN_LIMIT = 8 };
 
+enum { PIECE_BYTES = 1 << 20 }; /* between two questions whether to cancel */
+
 typedef enum kind { INT8, UINT8, INT16, UINT16, INT32, UINT32, INT64, UINT64, FLOAT32, FLOAT64, KIND_COUNT } kind;
 static const struct {
   const char *name;
@@ -483,8 +485,21 @@ static laves_result read_text(reader *r, const source *s, const char *name, arra
         laves__scan_space(&scan) && (a->kind >= FLOAT32 ? laves__scan_double(&scan, &real) : laves__scan_int(&scan, &integer));
     if (!found) return laves__scan_fail_expected(&scan, error, name);
     put_value(a, i, real, integer);
+    if (laves__cancelled_at(r->input->context, "read", i, a->count)) return laves__fail_cancelled(error);
   }
   return LAVES_OK;
+}
+
+/* Inflates `left` bytes, piece by piece; Z_STREAM_END when that was all and nothing was missing. */
+static int inflate_pieces(reader *r, z_stream *z, size_t left) {
+  int status;
+  do {
+    if (laves__cancelled(r->input->context, "read", 0)) return Z_BUF_ERROR;
+    z->avail_out = (uInt)(left < PIECE_BYTES ? left : PIECE_BYTES);
+    left -= z->avail_out;
+    status = inflate(z, left > 0 ? Z_NO_FLUSH : Z_FINISH);
+  } while (status == Z_OK && z->avail_out == 0 && left > 0);
+  return status == Z_STREAM_END && (z->avail_out > 0 || left > 0) ? Z_BUF_ERROR : status;
 }
 
 /* Inflates one block of exactly out_count bytes. */
@@ -497,11 +512,11 @@ static laves_result inflate_block(reader *r, const char *name, const char *bytes
   z.next_in = (Bytef *)bytes;
   z.avail_in = (uInt)count;
   z.next_out = (Bytef *)out;
-  z.avail_out = (uInt)out_count;
-  const int status = inflate(&z, Z_FINISH);
+  const int status = inflate_pieces(r, &z, out_count);
   inflateEnd(&z);
+  if (laves__is_cancelled(context)) return laves__fail_cancelled(error);
   if (status == Z_MEM_ERROR) return laves__fail_memory(context, error);
-  return status == Z_STREAM_END && z.avail_out == 0 ? LAVES_OK : fail_array(r, name, error);
+  return status == Z_STREAM_END ? LAVES_OK : fail_array(r, name, error);
 }
 
 static laves_result read_block(reader *r, stream *s, const char *name, size_t packed_bytes, char *out, size_t out_bytes,
@@ -548,7 +563,12 @@ static laves_result read_compressed(reader *r, stream *s, const char *name, arra
 
 static laves_result read_plain(reader *r, stream *s, const char *name, array *a, laves_error *error) {
   uint64_t bytes;
-  if (!stream_header(r, s, &bytes) || bytes != a->bytes || !stream_read(s, a->data, a->bytes)) return fail_array(r, name, error);
+  if (!stream_header(r, s, &bytes) || bytes != a->bytes) return fail_array(r, name, error);
+  for (size_t done = 0, part; done < a->bytes; done += part) {
+    part = a->bytes - done < PIECE_BYTES ? a->bytes - done : PIECE_BYTES;
+    if (laves__mesh_input_cancelled(r->input, s->at)) return laves__fail_cancelled(error);
+    if (!stream_read(s, a->data + done, part)) return fail_array(r, name, error);
+  }
   return LAVES_OK;
 }
 
@@ -752,6 +772,7 @@ static laves_result add_points(reader *r, const piece *p, laves_error *error) {
   for (size_t i = 0; i < p->point_count && result == LAVES_OK; i++) {
     const laves__vec3 point = v3(real_at(&points, 3 * i), real_at(&points, 3 * i + 1), real_at(&points, 3 * i + 2));
     if (!laves__mesh_input_add_point(r->input, point)) result = laves__fail_memory(r->input->context, error);
+    if (laves__cancelled_at(r->input->context, "read", i, p->point_count)) result = laves__fail_cancelled(error);
   }
   free_array(r, &points);
   return result;
@@ -761,8 +782,10 @@ static laves_result add_points(reader *r, const piece *p, laves_error *error) {
 static laves_result add_values(reader *r, const piece *p, laves_error *error) {
   array values = {0};
   laves_result result = read_array(r, p, VALUES, p->point_count, &values, error);
-  for (size_t i = 0; i < p->point_count && result == LAVES_OK; i++)
+  for (size_t i = 0; i < p->point_count && result == LAVES_OK; i++) {
     if (!laves__mesh_input_add_value(r->input, real_at(&values, i))) result = laves__fail_memory(r->input->context, error);
+    if (laves__cancelled_at(r->input->context, "read", i, p->point_count)) result = laves__fail_cancelled(error);
+  }
   free_array(r, &values);
   return result;
 }

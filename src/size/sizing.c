@@ -85,6 +85,7 @@ laves_result laves_sizing_add_script(laves_sizing *sizing, const char *path, lav
   laves_context *context = sizing->context;
   laves__source s = {.kind = LAVES__SOURCE_SCRIPT};
   const char *slash = strrchr(path, '/');
+  laves__progress_reset(context);
   laves_result result = laves__file_read(context, path, &s.text, &s.text_length, error);
   if (result == LAVES_OK) result = copy_text(context, path, strlen(path), &s.name, &s.name_length, error);
   if (result == LAVES_OK && slash)
@@ -96,6 +97,7 @@ laves_result laves_sizing_add_script(laves_sizing *sizing, const char *path, lav
 laves_result laves_sizing_add_background(laves_sizing *sizing, const char *path, const char *array_name, laves_error *error) {
   laves_context *context = sizing->context;
   laves__source s = {.kind = LAVES__SOURCE_BACKGROUND};
+  laves__progress_reset(context);
   laves_result result = copy_text(context, path, strlen(path), &s.name, &s.name_length, error);
   if (result == LAVES_OK) result = laves__background_load(context, path, array_name, &s.background, error);
   return add(sizing, &s, result, error);

@@ -51,9 +51,10 @@ static bool reach(laves__lattice *lattice, site_queue *queue, uint32_t id, int d
 }
 
 /* The first sites of the search that have the given depth, 0 or 1. Depth 0: ON sites that bound kept tets or pieces. Depth 1:
- * ON sites whose star is whole, and inner corners of pieces. */
+ * ON sites whose star is whole, and inner corners of pieces. False when memory is short or it is cancelled. */
 static bool reach_first(laves__lattice *lattice, const laves__cuts *cuts, int depth, site_queue *queue) {
-  for (size_t i = 0; i < lattice->record_count; i++)
+  for (size_t i = 0; i < lattice->record_count; i++) {
+    if (laves__cancelled_at(lattice->context, "snap", i, lattice->record_count)) return false;
     for (int site = 0; site < LAVES__C15_SITES; site++) {
       if (lattice->record[i].label[site] != LAVES__LABEL_ON) continue;
       const laves__site s = {(int32_t)i, (uint8_t)site};
@@ -61,6 +62,7 @@ static bool reach_first(laves__lattice *lattice, const laves__cuts *cuts, int de
       const bool whole = kept == laves__whole_star(lattice, s);
       if (kept && whole == (depth == 1) && !reach(lattice, queue, laves__site_id(s), depth)) return false;
     }
+  }
   for (size_t t = 0; cuts && t < cuts->tet_count; t++)
     for (int k = 0; k < 4; k++) {
       const uint32_t id = cuts->tet[t][k];
@@ -78,6 +80,7 @@ static bool measure_depths(laves__lattice *lattice, const laves__cuts *cuts, siz
   site_queue queue = {.context = lattice->context};
   bool memory = reach_first(lattice, cuts, 0, &queue) && reach_first(lattice, cuts, 1, &queue);
   for (size_t head = 0; memory && head < queue.count; head++) {
+    memory = !laves__cancelled_at(lattice->context, "snap", head, queue.count);
     const laves__site at = laves__site_of(queue.id[head]);
     const int depth = lattice->record[at.cell].depth[at.site];
     if (depth == LAVES__DEPTH_MAX) break;
@@ -328,7 +331,7 @@ size_t laves__layer_untangle(laves__layer *layer, const laves__vec3 *start) {
   enum { HALVINGS = 6 };
   for (int round = 0;; round++) {
     bool bad = false;
-    for (size_t t = 0; t < layer->tet_count; t++) {
+    for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(layer->context, "snap", t, layer->tet_count); t++) {
       if (layer->tet[t][0] < 0 || is_positive(layer, (int32_t)t)) continue;
       bad = true;
       for (int k = 0; k < 4; k++) {

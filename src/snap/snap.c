@@ -49,6 +49,7 @@ laves_result laves__snap(const laves__frame *frame, bool keep_thin, laves__latti
     counts->specks = laves__layer_drop_specks(layer);
     counts->off_surface = laves__layer_untangle(layer, start);
     for (size_t v = 0; v < layer->vertex_count; v++) counts->snapped += layer->depth[v] == 0;
+    if (laves__is_cancelled(context)) result = laves__fail_cancelled(error);
   }
   laves__free(context, start, layer->vertex_count, sizeof *start);
   laves__parted_free(context, &parted);

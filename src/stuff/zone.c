@@ -23,7 +23,8 @@ static laves__guarantee promised_window(const laves__guarantee *g) {
 size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced) {
   const laves__guarantee promised = promised_window(guarantee);
   size_t count = 0;
-  for (size_t t = 0; t < layer->tet_count; t++) count += is_broken(layer, t, &promised) && !(forced && forced[t]);
+  for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(layer->context, "stuff", t, layer->tet_count); t++)
+    count += is_broken(layer, t, &promised) && !(forced && forced[t]);
   return count;
 }
 
@@ -41,7 +42,7 @@ static void zone_cells(laves__lattice *lattice, laves__vec3 centre, int reach) {
 void laves__zone_around(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced, int reach,
                         laves__lattice *lattice) {
   const laves__guarantee promised = promised_window(guarantee);
-  for (size_t t = 0; t < layer->tet_count; t++) {
+  for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(layer->context, "stuff", t, layer->tet_count); t++) {
     if (!is_broken(layer, t, &promised) || (forced && forced[t])) continue;
     laves__vec3 p[4];
     laves__layer_points(layer, (int32_t)t, p);

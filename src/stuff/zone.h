@@ -6,8 +6,8 @@
 #include "mesh/layer.h"
 #include "stuff/rule.h"
 
-/* How many tets of the layer are outside the promised window. `forced`: a flag for each tet whose angles the input fixes, which
- * do not count; NULL: none. */
+/* How many tets of the layer are outside the promised window; too few when cancelled meanwhile. `forced`: a flag for each tet
+ * whose angles the input fixes, which do not count; NULL: none. */
 size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced);
 
 /* Puts in the zone all sites of the cells within `reach` cells of each tet outside the promised window. */

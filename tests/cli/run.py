@@ -9,8 +9,8 @@ A case is a text file; its steps run in one empty folder, where `laves` is the p
     file NAME           makes a file of the lines that follow and begin with '| '
     env NAME=VALUE      for all steps that follow
     $ COMMAND           a step, run by sh
-    exit N              its exit code (0 when not said)
-    signal INT 0.3      sent to it after so many seconds
+    exit N              its exit code (0 when not said); several: one of them; -N: ended by signal N
+    signal INT 0.3      sent to it after so many seconds, if it still runs; a second line: so long after the first
     tty                 its stderr is a terminal
     out GLOB, err GLOB  its stdout and stderr, line by line, blank lines apart; a line '...' stands
                         for any lines. None: not looked at. 'out' or 'err' alone says that it is empty
@@ -45,10 +45,10 @@ class Step:
     def __init__(self, command, line):
         self.command = command
         self.line = line
-        self.exit = 0
+        self.exit = [0]
         self.out = None
         self.err = None
-        self.signal = None
+        self.signals = []
         self.tty = False
         self.checks = []
         self.last_line = line
@@ -73,10 +73,10 @@ def parse(text):
             step = Step(rest, number)
             actions.append(("step", step))
         elif word == "exit":
-            step.exit = int(rest)
+            step.exit = [int(code) for code in rest.split()]
         elif word == "signal":
             name, delay = rest.split()
-            step.signal = (getattr(signal, "SIG" + name), float(delay))
+            step.signals.append((getattr(signal, "SIG" + name), float(delay)))
         elif word == "tty":
             step.tty = True
         elif word in ("out", "err"):
@@ -129,16 +129,16 @@ def read_terminal(master, chunks):
 def run(step, folder, environment):
     """Returns exit code, stdout, stderr."""
     master, slave = pty.openpty() if step.tty else (None, subprocess.PIPE)
-    process = subprocess.Popen(["sh", "-c", "exec " + step.command if step.signal else step.command], cwd=folder,
+    process = subprocess.Popen(["sh", "-c", "exec " + step.command if step.signals else step.command], cwd=folder,
                                env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=slave)
     chunks = []
     if step.tty:
         os.close(slave)
         reader = threading.Thread(target=read_terminal, args=(master, chunks))
         reader.start()
-    if step.signal:
-        time.sleep(step.signal[1])
-        process.send_signal(step.signal[0])
+    for number, delay in step.signals:
+        time.sleep(delay)
+        process.send_signal(number)
     try:
         out, err = process.communicate(timeout=SECONDS_AT_MOST)
     except subprocess.TimeoutExpired:
@@ -189,8 +189,8 @@ def check(kind, words, out, folder):
 def judge(step, code, out, err, folder):
     """Returns the list of what is wrong."""
     wrong = []
-    if code != step.exit:
-        wrong.append(f"exit code {code}, not {step.exit}")
+    if code not in step.exit:
+        wrong.append(f"exit code {code}, not {' or '.join(map(str, step.exit))}")
     for name, patterns, text in (("out", step.out, out), ("err", step.err, err)):
         if patterns is not None and not matches(patterns, written_lines(text)):
             wrong.append(f"std{name} differs from the lines wanted")
