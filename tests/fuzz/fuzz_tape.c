@@ -95,7 +95,8 @@ static void check_point(tried *t, laves__vec3 p, double batch, laves__dual dual,
   laves__tape_evaluate(&t->tape, 1, &p, &single);
   laves__tape_evaluate(&t->cut.tape, 1, &p, &cut);
   FUZZ_REQUIRE(batch == tamed(plain) && single == batch);
-  FUZZ_REQUIRE(tamed(dual.value) == batch);
+  /* Zeros may differ in their signs, which shows where they divide. */
+  if (!may_be_nan) FUZZ_REQUIRE(tamed(dual.value) == batch);
   if (!may_be_nan) FUZZ_REQUIRE(!isnan(plain) && plain >= range.lower && plain <= range.upper);
   if (!may_be_nan) FUZZ_REQUIRE(cut == batch);
   const laves__dual one = laves__tape_gradient(&t->tape, p);
