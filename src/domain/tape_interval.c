@@ -12,8 +12,8 @@ static const double pi = 3.14159265358979323846;
 
 static laves__interval entire(void) { return (laves__interval){-INFINITY, INFINITY}; }
 
-/* `absolute` covers functions whose error is not relative to their value, such as sine near its zeros. A lower end of +infinity, or
- * an upper one of -infinity, is NaN when it is widened, and so leaves nothing known. */
+/* `absolute` covers functions whose error is not relative to their value, such as sine near its zeros. A lower end of +infinity,
+ * or an upper one of -infinity, is NaN when it is widened, and so leaves nothing known. */
 static laves__interval widened(double lower, double upper, double absolute) {
   const double l = lower - (fabs(lower) * widen_relative + absolute), u = upper + (fabs(upper) * widen_relative + absolute);
   return isnan(l) || isnan(u) ? entire() : (laves__interval){l, u};

@@ -21,7 +21,7 @@ typedef struct tried {
 /* ---- from bytes ---- */
 
 static double take_number(fuzz_bytes *b) {
-  static const double special[] = {0,    1,     -1,    0.5,    2,      -0.0,  3.14159265358979323846, 1e-9,  1e16, -1e16,
+  static const double special[] = {0,    1,     -1,    0.5,    2,      -0.0,   3.14159265358979323846, 1e-9,  1e16, -1e16,
                                    1e99, 1e154, 1e300, -1e300, 1e-300, 5e-324, 1.5707963267948966,     -0.25, 3,    1e6};
   const int kind = fuzz_byte(b);
   if (kind < 128) return special[kind % (int)LAVES__COUNT_OF(special)];

@@ -3,8 +3,8 @@
  *
  *     replay_NAME [--alter] PATH...
  *
- * With --alter each file of up to ALTERED_BYTES is also tried cut off behind every byte, and with every byte changed in some ways,
- * so that what the target requires is seen to hold all round the seeds without a fuzzer. */
+ * With --alter each file of up to ALTERED_BYTES is also tried cut off behind every byte, and with every byte changed in some
+ * ways, so that what the target requires is seen to hold all round the seeds without a fuzzer. */
 #include <dirent.h>
 #include <stdbool.h>
 #include <stdio.h>

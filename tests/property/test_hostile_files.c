@@ -182,36 +182,46 @@ static void counts_may_lie(void **state) {
       {SURFACE, "a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 %\n"},
       {SURFACE, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 %\n"},
       {SURFACE, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -%\n"},
-      {SURFACE, "a.ply", "ply\nformat ascii 1.0\nelement vertex %\nproperty float x\nproperty float y\nproperty float z\n"
-                         "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
-      {SURFACE, "a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                         "element face %\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
-      {SURFACE, "a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                         "element face 1\nproperty list uint int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n% 0 1 2\n"},
+      {SURFACE, "a.ply",
+       "ply\nformat ascii 1.0\nelement vertex %\nproperty float x\nproperty float y\nproperty float z\n"
+       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
+      {SURFACE, "a.ply",
+       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+       "element face %\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
+      {SURFACE, "a.ply",
+       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+       "element face 1\nproperty list uint int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n% 0 1 2\n"},
       {SURFACE, "a.ply", "ply\nformat ascii 1.0\nelement nothing %\nelement vertex %\nend_header\n"},
-      {SURFACE, "a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 2 0 1 1 1\n$EndElements\n"},
+      {SURFACE, "a.msh",
+       "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 2 0 1 1 1\n$EndElements\n"},
       {SURFACE, "a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n%\n2 1 \"a\"\n$EndPhysicalNames\n"},
       {SURFACE, "a.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 % 0\n1 0 0 0 1 1 1 % 1 %\n$EndEntities\n"},
       {MESH, "a.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n% % 1 %\n3 1 0 %\n1\n0 0 0\n$EndNodes\n"},
-      {MESH, "a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n%\n1 4 0 1 1 1 1\n$EndElements\n"},
-      {MESH, "a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 4 % 1 1 1 1\n$EndElements\n"},
+      {MESH, "a.msh",
+       "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n%\n1 4 0 1 1 1 1\n$EndElements\n"},
+      {MESH, "a.msh",
+       "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 4 % 1 1 1 1\n$EndElements\n"},
       {MESH, "a.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices %\n0 0 0 0\nEnd\n"},
       {MESH, "a.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices 1\n0 0 0 0\nTetrahedra %\n1 1 1 1 0\nEnd\n"},
       {MESH, "a.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices 1\n0 0 0 0\nTetrahedra 1\n1 1 1 % 0\nEnd\n"},
-      {MESH, "a.vtu", "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"%\" NumberOfCells=\"%\">"
-                      "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0</DataArray></Points>"
-                      "</Piece></UnstructuredGrid></VTKFile>"},
-      {MESH, "a.vtu", "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"1\" NumberOfCells=\"1\">"
-                      "<Points><DataArray type=\"Float64\" NumberOfComponents=\"%\" format=\"ascii\">0 0 0</DataArray></Points>"
-                      "</Piece></UnstructuredGrid></VTKFile>"},
-      {MESH, "a.vtu", "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\" header_type=\"UInt64\"><UnstructuredGrid>"
-                      "<Piece NumberOfPoints=\"1\" NumberOfCells=\"1\"><Points><DataArray type=\"Float64\" "
-                      "NumberOfComponents=\"3\" format=\"appended\" offset=\"%\"/></Points></Piece></UnstructuredGrid>"
-                      "<AppendedData encoding=\"raw\">_12345678</AppendedData></VTKFile>"},
+      {MESH, "a.vtu",
+       "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"%\" NumberOfCells=\"%\">"
+       "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0</DataArray></Points>"
+       "</Piece></UnstructuredGrid></VTKFile>"},
+      {MESH, "a.vtu",
+       "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"1\" NumberOfCells=\"1\">"
+       "<Points><DataArray type=\"Float64\" NumberOfComponents=\"%\" format=\"ascii\">0 0 0</DataArray></Points>"
+       "</Piece></UnstructuredGrid></VTKFile>"},
+      {MESH, "a.vtu",
+       "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\" header_type=\"UInt64\"><UnstructuredGrid>"
+       "<Piece NumberOfPoints=\"1\" NumberOfCells=\"1\"><Points><DataArray type=\"Float64\" "
+       "NumberOfComponents=\"3\" format=\"appended\" offset=\"%\"/></Points></Piece></UnstructuredGrid>"
+       "<AppendedData encoding=\"raw\">_12345678</AppendedData></VTKFile>"},
       {SIZES, "a.nrrd", "NRRD0004\ntype: float\ndimension: 3\nsizes: % % %\nencoding: raw\nendian: little\n\n1234"},
       {SIZES, "a.nrrd", "NRRD0004\ntype: float\ndimension: %\nsizes: 1 1 1\nencoding: raw\nendian: little\n\n1234"},
       {SIZES, "a.nrrd", "NRRD0004\ntype: block\nblock size: %\ndimension: 3\nsizes: 1 1 1\nencoding: raw\n\n1234"},
-      {SIZES, "a.nrrd", "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nendian: little\nline skip: %\nbyte skip: %\n\n1234"},
+      {SIZES, "a.nrrd",
+       "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nendian: little\nline skip: %\nbyte skip: %\n\n1234"},
       {LINES, "a.vtk", "# vtk DataFile Version 3.0\na\nASCII\nDATASET POLYDATA\nPOINTS % float\n0 0 0\nLINES 1 2\n1 0\n"},
       {LINES, "a.vtk", "# vtk DataFile Version 3.0\na\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n0 0 0\nLINES % %\n1 0\n"},
       {LINES, "a.vtk", "# vtk DataFile Version 3.0\na\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n0 0 0\nLINES 1 2\n% 0\n"},
@@ -452,10 +462,11 @@ static void bombs_are_not_unpacked(void **state) {
   /* One block of zlib that says it is 24 bytes, and is not; then one that says it is 4 GiB. */
   static const uint32_t said[] = {24, 0xffffffff};
   for (int i = 0; i < 2; i++) {
-    put(&c, "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\" compressor=\"vtkZLibDataCompressor\">"
-            "<UnstructuredGrid><Piece NumberOfPoints=\"1\" NumberOfCells=\"1\"><Points><DataArray type=\"Float64\" "
-            "NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/></Points></Piece></UnstructuredGrid>"
-            "<AppendedData encoding=\"raw\">_");
+    put(&c,
+        "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\" compressor=\"vtkZLibDataCompressor\">"
+        "<UnstructuredGrid><Piece NumberOfPoints=\"1\" NumberOfCells=\"1\"><Points><DataArray type=\"Float64\" "
+        "NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/></Points></Piece></UnstructuredGrid>"
+        "<AppendedData encoding=\"raw\">_");
     content packed = {0};
     put_zeros_compressed(&packed, (size_t)1 << 28, false);
     put_u32(&c, 1);
