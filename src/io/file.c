@@ -61,12 +61,13 @@ static laves_result read_regular(laves_context *context, int file, const struct 
 
 /* ---- pipes ---- */
 
-enum { POLL_MILLISECONDS = 100 };
+enum { POLL_MILLISECONDS = 100, PATIENCE = 10 };
 
 /* Bytes that grow; one more than `used` always has room. */
 typedef struct block {
   char *bytes;
   size_t capacity, used;
+  int waits; /* for a first writer */
 } block;
 
 /* Waits until the pipe has something or is closed, or a cancel is asked for. */
@@ -77,11 +78,19 @@ static laves_result wait_for_pipe(laves_context *context, int file, const char *
   return LAVES_OK;
 }
 
+/* Who writes to a named pipe may come a little later than we do. */
+static laves_result wait_for_writer(laves_context *context, laves_error *error) {
+  if (laves__cancelled(context, "reading", 0)) return laves__fail_cancelled(error);
+  poll(NULL, 0, POLL_MILLISECONDS);
+  return LAVES_OK;
+}
+
 static laves_result read_piece(laves_context *context, int file, const char *path, block *b, bool *ended, laves_error *error) {
   if (!laves__grow(context, &b->bytes, &b->capacity, b->used + 65536, 1)) return laves__fail_memory(context, error);
   const ssize_t got = read(file, b->bytes + b->used, b->capacity - 1 - b->used);
   if (got < 0 && (errno == EAGAIN || errno == EINTR)) return wait_for_pipe(context, file, path, error);
   if (got < 0) return fail_errno(error, path, "read");
+  if (got == 0 && b->used == 0 && b->waits++ < PATIENCE) return wait_for_writer(context, error);
   *ended = got == 0;
   b->used += (size_t)got;
   if (b->used > LAVES__PIPE_BYTES)
