@@ -2,6 +2,7 @@
 #include "session.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -67,6 +68,13 @@ static laves_result fail_json(session *run) {
   return session_fail(run, LAVES_ERROR_WRITE, "cannot write the JSON file '%s': %s", run->given->json, strerror(errno));
 }
 
+/* Opening does not wait for someone to read from a pipe; writing does. */
+static FILE *open_special(const char *path) {
+  const int file = open(path, O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (file < 0 || fcntl(file, F_SETFL, fcntl(file, F_GETFL) & ~O_NONBLOCK) < 0) return NULL;
+  return fdopen(file, "w");
+}
+
 /* A device or a pipe is written to directly; a file is written beside its place and renamed, so that it appears whole. */
 static laves_result save_json(session *run, laves_result result, session_facts_fn *write_facts, const void *facts) {
   const char *path = run->given->json;
@@ -83,7 +91,7 @@ static laves_result save_json(session *run, laves_result result, session_facts_f
     errno = ENAMETOOLONG;
     return fail_json(run);
   }
-  FILE *file = fopen(temporary, "w");
+  FILE *file = special ? open_special(path) : fopen(temporary, "w");
   if (!file) return fail_json(run);
   write_json(file, run, result, write_facts, facts);
   bool right = !ferror(file);
