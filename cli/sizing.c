@@ -6,17 +6,16 @@
  * take. A place is tag:NAME, point:X,Y,Z or curve:FILE. The last = of a refinement ends its place, so names may hold others. */
 #include "sizing.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-/* Devices are none: some never end. */
+/* Devices and pipes are left to the library, which says what it takes. */
 static bool is_file(const char *path) {
   struct stat status;
-  return stat(path, &status) == 0 && !S_ISDIR(status.st_mode) && !S_ISCHR(status.st_mode);
+  return stat(path, &status) == 0 && !S_ISDIR(status.st_mode);
 }
 
 static bool ends_with(const char *text, const char *ending) {
@@ -98,81 +97,12 @@ static bool parse_refinement(const char *text, refinement *r) {
   return (*numbers == '\0' || take_number(&numbers, &r->radius)) && *numbers == '\0';
 }
 
-/* A list of points that grows. */
-typedef struct polyline {
-  double (*points)[3];
-  size_t count, capacity;
-} polyline;
-
-static bool polyline_add(polyline *line, const double point[3]) {
-  if (line->count == line->capacity) {
-    const size_t capacity = line->capacity ? 2 * line->capacity : 64;
-    double(*grown)[3] = realloc(line->points, capacity * sizeof *grown);
-    if (!grown) return false;
-    line->points = grown;
-    line->capacity = capacity;
-  }
-  memcpy(line->points[line->count++], point, 3 * sizeof *point);
-  return true;
-}
-
-/* The polyline so far becomes a source. */
-static laves_result end_polyline(session *run, laves_sizing *sizing, polyline *line, const refinement *r) {
-  if (line->count == 0) return LAVES_OK;
-  const laves_result result = laves_sizing_add_curve(sizing, line->points[0], line->count, r->size, r->radius, &run->error);
-  line->count = 0;
-  return result;
-}
-
-static laves_result take_line(session *run, laves_sizing *sizing, polyline *line, const refinement *r, char *text,
-                              size_t number) {
-  double point[3];
-  text[strcspn(text, "#\n")] = '\0';
-  const char *content = text + strspn(text, " \t\r");
-  if (*content == '\0') return end_polyline(run, sizing, line, r);
-  if (!take_three(content, point)) {
-    return session_fail(run, LAVES_ERROR_INPUT, "'%.200s', line %zu: expected three coordinates, not '%.60s'", r->place, number,
-                        content);
-  }
-  return polyline_add(line, point) ? LAVES_OK : session_fail(run, LAVES_ERROR_MEMORY, "out of memory");
-}
-
-/* A point on each line; an empty line ends a polyline. */
-static laves_result add_curves(session *run, laves_sizing *sizing, const refinement *r) {
-  char text[512];
-  polyline line = {0};
-  laves_result result = LAVES_OK;
-  size_t number = 0, points = 0;
-  FILE *file = is_file(r->place) ? fopen(r->place, "r") : NULL;
-  if (!file && errno == ENOMEM) {
-    return session_fail(run, LAVES_ERROR_MEMORY, "no memory to read the curve '%.200s'", r->place);
-  }
-  if (!file) {
-    return session_fail(run, LAVES_ERROR_INPUT, "the curve '%.200s' cannot be read: %s", r->place,
-                        is_file(r->place) ? strerror(errno) : "there is no such file");
-  }
-  while (result == LAVES_OK && fgets(text, sizeof text, file)) {
-    const size_t before = line.count;
-    result = take_line(run, sizing, &line, r, text, ++number);
-    points += line.count > before;
-  }
-  if (result == LAVES_OK && ferror(file)) {
-    result = session_fail(run, LAVES_ERROR_INPUT, "the curve '%.200s' cannot be read: %s", r->place, strerror(errno));
-  }
-  if (result == LAVES_OK) result = end_polyline(run, sizing, &line, r);
-  if (result == LAVES_OK && points == 0)
-    result = session_fail(run, LAVES_ERROR_INPUT, "the curve '%.200s' has no points", r->place);
-  free(line.points);
-  fclose(file);
-  return result;
-}
-
 static laves_result add_refinement(session *run, laves_sizing *sizing, const char *text) {
   refinement r;
   double point[3];
   if (!parse_refinement(text, &r)) return session_fail(run, LAVES_ERROR_OPTION, refine_form, text);
   if (strncmp(text, "tag:", 4) == 0) return laves_sizing_add_tag(sizing, r.place, r.size, r.radius, &run->error);
-  if (strncmp(text, "curve:", 6) == 0) return add_curves(run, sizing, &r);
+  if (strncmp(text, "curve:", 6) == 0) return laves_sizing_add_curve_file(sizing, r.place, r.size, r.radius, &run->error);
   if (strncmp(text, "point:", 6) == 0 && take_three(r.place, point))
     return laves_sizing_add_points(sizing, point, 1, r.size, r.radius, &run->error);
   return session_fail(run, LAVES_ERROR_OPTION, refine_form, text);

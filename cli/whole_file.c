@@ -51,12 +51,22 @@ static int open_temporary(whole_file *out, mode_t mode) {
   return -1;
 }
 
+/* Opening does not wait for someone to read from a pipe; writing does. */
+static int open_direct(const char *path) {
+  const int descriptor = open(path, O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (descriptor < 0 || fcntl(descriptor, F_SETFL, fcntl(descriptor, F_GETFL) & ~O_NONBLOCK) >= 0) return descriptor;
+  const int reason = errno;
+  close(descriptor);
+  errno = reason;
+  return -1;
+}
+
 bool whole_file_open(whole_file *out, const char *path) {
   mode_t mode;
   bool direct;
   *out = (whole_file){0};
   if (!find_target(out, path, &mode, &direct)) return false;
-  const int descriptor = direct ? open(path, O_WRONLY | O_CLOEXEC) : open_temporary(out, mode);
+  const int descriptor = direct ? open_direct(path) : open_temporary(out, mode);
   out->file = descriptor >= 0 ? fdopen(descriptor, "wb") : NULL;
   if (out->file) return true;
   const int reason = errno;

@@ -37,7 +37,8 @@ static laves_result hold_features(laves__run *r) {
     if (!in_zone) return laves__fail_memory(r->context, r->error);
     laves__zone_vertices(&r->lattice, &r->layer, in_zone);
   }
-  const laves_result result = laves__keep_features(&r->frame, in_zone, &r->layer, &r->kept_features, r->error);
+  const laves_result result =
+      laves__keep_features(&r->frame, in_zone, !r->options->improve, &r->layer, &r->kept_features, r->error);
   laves__free(r->context, in_zone, vertices, sizeof *in_zone);
   laves__stage_end(r, "features");
   return result;

@@ -112,7 +112,7 @@ LAVES_API size_t laves_context_peak_bytes(const laves_context *context);
 typedef struct laves_domain laves_domain;
 
 /// Reads a triangle surface (STL, OBJ, PLY, OFF, Gmsh; the format is found from the content) or a Lua script (.lua).
-/// @param path    file name
+/// @param path    file name; or a pipe, which is read to its end (1 GiB at most); its silence can be cancelled
 /// @param domain  out: owned by the caller, free with laves_domain_free(); NULL on failure
 /// @param error   out, optional
 /// @return LAVES_OK, LAVES_ERROR_INPUT, LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED
@@ -321,6 +321,11 @@ LAVES_API laves_result laves_sizing_add_points(laves_sizing *sizing, const doubl
 /// The same about a polyline: each point is joined to the next. Close it by repeating the first point.
 LAVES_API laves_result laves_sizing_add_curve(laves_sizing *sizing, const double *points, size_t count, double size,
                                               double radius, laves_error *error);
+
+/// The same about all points and polylines of a file, of the forms in docs/feature-files.md.
+/// @return also LAVES_ERROR_INPUT, LAVES_ERROR_CANCELLED
+LAVES_API laves_result laves_sizing_add_curve_file(laves_sizing *sizing, const char *path, double size, double radius,
+                                                   laves_error *error);
 
 /// The same about the triangles of the domain's surface that have a tag.
 /// @param name  as of laves_domain_tag_name(); or a tag's number in decimal. That there is none such in a domain is an error

@@ -12,8 +12,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/sha256.h"
 #include "certify/check_features.h"
-#include "certify/sha256.h"
 #include "io/file.h"
 
 static const uint32_t certify_cookie = 0x63657274;
@@ -52,16 +52,8 @@ static void name_input(laves_certificate *c, const char *input, bool is_file) {
   c->input_name[end] = 0;
 }
 
-static void digest_text(const char *bytes, size_t length, char text[LAVES_HASH_CAPACITY]) {
-  laves__sha256 hash;
-  unsigned char digest[LAVES__SHA256_BYTES];
-  laves__sha256_start(&hash);
-  laves__sha256_add(&hash, bytes, length);
-  laves__sha256_finish(&hash, digest);
-  laves__sha256_text(digest, text);
-}
-
-/* Expressions have the format of that name; everything else came from a file. */
+/* Expressions have the format of that name; everything else came from a file. A domain knows the hash of what it was read from:
+ * the file may have changed since, and a pipe cannot be read again. */
 static laves_result describe_input(laves_context *context, const laves_certify_options *options, laves_certificate *c,
                                    laves_error *error) {
   static const char *const kinds[] = {"surface", "implicit", "function"};
@@ -73,15 +65,15 @@ static laves_result describe_input(laves_context *context, const laves_certify_o
   if (!options->input) return LAVES_OK;
   const bool is_file = strstr(c->input_format, "expression") == NULL;
   name_input(c, options->input, is_file);
-  if (!is_file) {
-    digest_text(options->input, strlen(options->input), c->input_hash);
+  if (domain->input_hash[0]) {
+    copy_text(c->input_hash, sizeof c->input_hash, domain->input_hash);
     return LAVES_OK;
   }
   char *bytes;
   size_t length;
   const laves_result result = laves__file_read(context, options->input, &bytes, &length, error);
   if (result != LAVES_OK) return result;
-  digest_text(bytes, length, c->input_hash);
+  laves__sha256_of(bytes, length, c->input_hash);
   laves__free(context, bytes, length + 1, 1);
   return LAVES_OK;
 }

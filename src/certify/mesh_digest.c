@@ -9,8 +9,8 @@
  * them. Source of the hash: [fips180-4]. */
 #include <string.h>
 
+#include "base/sha256.h"
 #include "certify/certify.h"
-#include "certify/sha256.h"
 
 enum { BLOCK_ITEMS = 1 << 16, PIECE = 512 };
 

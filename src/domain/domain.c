@@ -3,6 +3,7 @@
  * A maker fills a zeroed domain; whatever fails, the handle stays NULL and nothing is kept. */
 #include <string.h>
 
+#include "base/sha256.h"
 #include "domain/oracle.h"
 #include "domain/surface_input.h"
 #include "io/file.h"
@@ -82,8 +83,9 @@ laves_result laves_domain_from_file_with(laves_context *context, const char *pat
   if (!made) return laves__fail_memory(context, error);
   char *bytes = NULL;
   size_t length = 0;
-  result = laves__file_read(context, path, &bytes, &length, error);
+  result = laves__input_read(context, path, &bytes, &length, error);
   if (result == LAVES_OK) {
+    laves__sha256_of(bytes, length, made->input_hash);
     result = ends_with_lua(path) ? build_script(context, path, bytes, length, made, error)
                                  : build_surface(context, path, bytes, length, options, made, error);
     laves__free(context, bytes, length + 1, 1);
@@ -95,6 +97,7 @@ laves_result laves_domain_from_expression(laves_context *context, const char *te
   *domain = NULL;
   laves_domain *made = domain_create(context);
   if (!made) return laves__fail_memory(context, error);
+  laves__sha256_of(text, strlen(text), made->input_hash);
   return finish(laves__implicit_build(context, text, strlen(text), true, "expression", NULL, made, error), made, domain);
 }
 

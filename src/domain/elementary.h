@@ -2,7 +2,8 @@
  *
  * Reduction and polynomials after fdlibm (Sun Microsystems, 1993: k_sin.c, k_cos.c, e_exp.c), rounding by adding and
  * taking away 1.5 * 2^52. Errors are below 2 ulp, or 2e-16 absolutely near the zeros of sine and cosine, while the argument
- * stays below 1e6; sine and cosine lose digits in proportion beyond that. No function returns NaN or infinity for
+ * stays below 1e6; sine and cosine lose digits in proportion beyond that, and beyond 2^50 they stay what they are there, since
+ * then there is nothing left to reduce. No function returns NaN or infinity for
  * finite arguments: square roots and logarithms of what is negative are those of zero or of the smallest normal number,
  * exponentials saturate. A solid thus has a sign everywhere. */
 #ifndef LAVES_DOMAIN_ELEMENTARY_H
@@ -26,15 +27,16 @@ static inline double floor_of(double x) {
   return fabs(x) < 2251799813685248.0 ? down : x;
 }
 
-/* a - b floor(a / b), in [0, b) but for rounding; b = 0 gives 0. */
+/* a - b floor(a / b), in [0, b) but for rounding; 0 where the quotient is no number, as for b = 0. */
 static inline double mod_of(double a, double b) {
-  const double q = b != 0 ? floor_of(a / b) : 0;
-  return b != 0 ? a - b * q : 0;
+  const double quotient = b != 0 ? a / b : 0, rest = a - b * floor_of(quotient);
+  return b == 0 || fabs(quotient) > 1.7976931348623157e308 ? 0 : rest;
 }
 
 /* sin(x + quarter pi / 2) for quarter 0 or 1. */
 static inline double sine_shifted(double x, double quarter) {
-  const double two_over_pi = 0.63661977236758134308;
+  const double two_over_pi = 0.63661977236758134308, furthest = 1125899906842624.0;
+  x = min_of(furthest, max_of(-furthest, x)); /* in this order NaN stays NaN */
   const double k = round_near(x * two_over_pi);
   const double r = ((x - k * 1.57079632673412561417e+00) - k * 6.07710050630396597660e-11) - k * 2.02226624879595063154e-21;
   const double z = r * r;

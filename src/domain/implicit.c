@@ -5,6 +5,7 @@
  * points go side by side, as gradients are cheaper by the batch. Sides of boxes come from intervals. Far from the zero point the
  * tape is compiled once more in coordinates relative to the solid's middle, where transforms and that shift merge into one matrix
  * and lose no digits. */
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -51,11 +52,14 @@ typedef struct newton {
   bool lost; /* too far from the start */
 } newton;
 
+/* Whether a slope can be divided by: its square neither overflows nor loses digits. */
+static bool is_usable(double slope2) { return slope2 >= DBL_MIN && slope2 <= DBL_MAX; }
+
 /* Makes the next trial; false when there is none: the foot is found, or the slope lost. */
 static bool begin_step(const implicit *s, double longest, newton *n) {
   const double slope2 = v3_norm2(n->here.gradient), length = fabs(n->here.value) / sqrt(slope2);
   if (n->steps == NEWTON_LIMIT || fabs(n->here.value) <= foot_tolerance * s->diagonal * sqrt(slope2)) return false;
-  if (!(slope2 > 0) || !isfinite(length)) return false;
+  if (!is_usable(slope2) || !isfinite(length)) return false;
   n->share = length > longest ? longest / length : 1;
   n->step = v3_scale(n->here.gradient, -n->here.value / slope2);
   n->halvings = 0;
@@ -87,8 +91,9 @@ static void find_gradients(const implicit *s, size_t count, const laves__vec3 *p
 
 /* Whether the way ended on the surface, and within reach. */
 static bool has_arrived(const implicit *s, double reach, const newton *n) {
-  const double slope = v3_norm(n->here.gradient);
-  if (n->lost || !(fabs(n->here.value) <= foot_tolerance_worst * s->diagonal * slope) || !(slope > 0)) return false;
+  const double slope2 = v3_norm2(n->here.gradient);
+  if (n->lost || !is_usable(slope2)) return false;
+  if (!(fabs(n->here.value) <= foot_tolerance_worst * s->diagonal * sqrt(slope2))) return false;
   return v3_distance(n->point, n->start) <= reach;
 }
 

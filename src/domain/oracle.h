@@ -94,7 +94,8 @@ struct laves_domain {
   laves__oracle oracle;
   laves_domain_info info; /* in input coordinates */
   char format[48];
-  char **tag_names; /* info.tag_count of them, each allocated with its length + 1 */
+  char input_hash[LAVES_HASH_CAPACITY]; /* SHA-256 of the bytes it was made from; empty when they are the caller's arrays */
+  char **tag_names;                     /* info.tag_count of them, each allocated with its length + 1 */
   char **region_names;
   int region_count;
 };

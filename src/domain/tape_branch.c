@@ -69,8 +69,9 @@ static bool is_choice(uint16_t op) {
 static bool is_norm(uint16_t op) { return op == LAVES__OP_NORM2 || op == LAVES__OP_NORM3 || op == LAVES__OP_SQRT; }
 
 /* Integers as sides of a choice, which is never 0. */
+static const double integer_limit = 1e9;
 static int32_t side_of_integer(double n) {
-  n = min_of(max_of(n, -1e9), 1e9);
+  n = min_of(max_of(n, -integer_limit), integer_limit);
   return (int32_t)(n >= 0 ? n + 1 : n);
 }
 static double integer_of_side(int32_t side) { return side > 0 ? side - 1 : side; }
@@ -113,8 +114,10 @@ static int left_out(uint16_t op, int32_t side) {
   return op == LAVES__OP_MIN || op == LAVES__OP_MAX ? 2 - side : op == LAVES__OP_FLOOR ? 0 : -1;
 }
 
+/* Integers that a side can't hold stay undecided. */
 static int32_t decided_integer(double lower, double upper) {
-  return floor_of(lower) == floor_of(upper) ? side_of_integer(floor_of(lower)) : 0;
+  const double n = floor_of(lower);
+  return n == floor_of(upper) && fabs(n) < integer_limit ? side_of_integer(n) : 0;
 }
 
 /* The choice that holds for all operands in the intervals, or 0. */
@@ -256,11 +259,12 @@ static cut_value made_choice(cutter *c, laves__instruction p, uint32_t origin, c
 static cut_value folded(cutter *c, laves__instruction p, uint32_t origin, const cut_value *v) {
   const double x[3] = {v[0].constant, v[1].constant, v[2].constant};
   const int32_t side = choose(p.op, x);
-  if (is_choice(p.op)) return made_choice(c, p, origin, v, side);
+  const double value = laves__op_value((laves__op)p.op, x[0], x[1], x[2]);
+  if (is_choice(p.op)) return constant_value(value, made_choice(c, p, origin, v, side).trail);
   uint32_t trail = v[0].trail;
   for (int k = 1; k < laves__op_operands[p.op]; k++) trail = add_trail(c, origin, 0, trail, v[k].trail);
   if (side) trail = add_trail(c, origin, side, trail, 0);
-  return constant_value(laves__op_value((laves__op)p.op, x[0], x[1], x[2]), trail);
+  return constant_value(value, trail);
 }
 
 static cut_value cut_instruction(cutter *c, size_t i, int32_t side) {
@@ -517,6 +521,8 @@ static laves__node resolved(laves__expression *e, const laves__instruction *p, i
     case LAVES__OP_FLOOR:
       return laves__node_constant(e, integer_of_side(side));
     case LAVES__OP_MOD: {
+      double divisor;
+      if (laves__node_is_constant(e, n[1], &divisor) && divisor == 0) return laves__node_constant(e, 0);
       const laves__node whole = laves__node_make(e, LAVES__OP_MUL, n[1], laves__node_constant(e, integer_of_side(side)), 0);
       return laves__node_make(e, LAVES__OP_SUB, n[0], whole, 0);
     }

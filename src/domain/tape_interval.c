@@ -12,10 +12,11 @@ static const double pi = 3.14159265358979323846;
 
 static laves__interval entire(void) { return (laves__interval){-INFINITY, INFINITY}; }
 
-/* `absolute` covers functions whose error is not relative to their value, such as sine near its zeros. */
+/* `absolute` covers functions whose error is not relative to their value, such as sine near its zeros. A lower end of +infinity,
+ * or an upper one of -infinity, is NaN when it is widened, and so leaves nothing known. */
 static laves__interval widened(double lower, double upper, double absolute) {
-  if (isnan(lower) || isnan(upper)) return entire();
-  return (laves__interval){lower - (fabs(lower) * widen_relative + absolute), upper + (fabs(upper) * widen_relative + absolute)};
+  const double l = lower - (fabs(lower) * widen_relative + absolute), u = upper + (fabs(upper) * widen_relative + absolute);
+  return isnan(l) || isnan(u) ? entire() : (laves__interval){l, u};
 }
 
 static laves__interval rounded(double lower, double upper) { return widened(lower, upper, widen_absolute); }
@@ -197,13 +198,13 @@ static laves__interval run(const laves__tape *tape, laves__box3 box, bool *may_b
     laves__interval operand[3] = {entire(), entire(), entire()};
     bool finite = true;
     for (int i = 0; i < laves__op_operands[p->op]; i++) {
-      operand[i] =
-          p->operand[i] == LAVES__OPERAND_CONSTANT ? (laves__interval){p->constant, p->constant} : registers[p->operand[i]];
+      const bool is_constant = p->operand[i] == LAVES__OPERAND_CONSTANT;
+      operand[i] = is_constant ? (laves__interval){p->constant, p->constant} : registers[p->operand[i]];
       finite = finite && is_finite(operand[i]);
     }
     result = apply(tape, p, operand, may_be_nan);
-    /* An overflow may become NaN further on. */
-    if (finite && !is_finite(result)) *may_be_nan = true;
+    /* An overflow, of a folded constant too, may become NaN further on. */
+    if ((finite && !is_finite(result)) || !isfinite(p->constant)) *may_be_nan = true;
     registers[p->out] = result;
     if (each) *each++ = result;
   }

@@ -79,12 +79,12 @@ static laves_result keep(laves__keeping *k, laves__kept_counts *counts, laves_er
   return laves__cancelled(k->context, "features", 1) ? laves__fail_cancelled(error) : LAVES_OK;
 }
 
-laves_result laves__keep_features(const laves__frame *frame, const bool *free, laves__layer *layer, laves__kept_counts *counts,
-                                  laves_error *error) {
+laves_result laves__keep_features(const laves__frame *frame, const bool *free, bool is_last, laves__layer *layer,
+                                  laves__kept_counts *counts, laves_error *error) {
   laves_context *context = layer->context;
   const laves__features *f = frame->features;
   const size_t vertices = layer->vertex_count;
-  laves__keeping k = {.context = context, .frame = frame, .features = f, .layer = layer, .free = free};
+  laves__keeping k = {.context = context, .frame = frame, .features = f, .layer = layer, .free = free, .is_last = is_last};
   *counts = (laves__kept_counts){0};
   laves_result result = laves__rim_make(layer, &k.rim, error);
   k.start = laves__alloc(context, vertices, sizeof *k.start);

@@ -34,11 +34,11 @@ typedef struct laves__kept_counts {
 } laves__kept_counts;
 
 /* Holds the layer's boundary vertices to the features of the frame, and moves them. `free`: a flag for each vertex that is to be
- * held to nothing; NULL: none.
- * Promise: tets stay positive (by an exact test), connectivity is unchanged, what is not near a feature stays where it is.
- * LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
-laves_result laves__keep_features(const laves__frame *frame, const bool *free, laves__layer *layer, laves__kept_counts *counts,
-                                  laves_error *error);
+ * held to nothing; NULL: none. `is_last`: nothing is improved afterwards, so tets also keep some volume, for one that is positive
+ * by rounding alone need not be so in the coordinates of the input. Promise: tets stay positive (by an exact test), connectivity
+ * is unchanged, what is not near a feature stays where it is. LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
+laves_result laves__keep_features(const laves__frame *frame, const bool *free, bool is_last, laves__layer *layer,
+                                  laves__kept_counts *counts, laves_error *error);
 
 /* ---- what the steps share ---- */
 
@@ -48,6 +48,7 @@ typedef struct laves__keeping {
   const laves__features *features;
   laves__layer *layer;
   const bool *free; /* [vertices] or NULL */
+  bool is_last;     /* no improvement follows */
   laves__rim rim;
   laves__vec3 *start;   /* [vertices] positions after snapping */
   int32_t *start_patch; /* [vertices] of the surface there; of boundary vertices */

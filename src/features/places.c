@@ -58,10 +58,21 @@ static void find_places(const laves__keeping *k) {
     if (k->claimed[c] != LAVES__NO_FEATURE) spread(k, (int32_t)c);
 }
 
-static bool is_positive(const laves__layer *layer, size_t tet) {
+/* Six times the volume over the cube of the longest edge: above what rounding does, far below any tet of use. */
+static const double least_volume = 1e-9;
+
+static bool is_thick(const laves__vec3 p[4]) {
+  double longest2 = 0;
+  for (int i = 0; i < 4; i++) {
+    for (int k = 0; k < i; k++) longest2 = fmax(longest2, v3_norm2(v3_sub(p[i], p[k])));
+  }
+  return v3_det(p[0], p[1], p[2], p[3]) > least_volume * longest2 * sqrt(longest2);
+}
+
+static bool is_positive(const laves__keeping *k, size_t tet) {
   laves__vec3 p[4];
-  laves__layer_points(layer, (int32_t)tet, p);
-  return laves__orient3d(p[0], p[1], p[2], p[3]) > 0;
+  laves__layer_points(k->layer, (int32_t)tet, p);
+  return laves__orient3d(p[0], p[1], p[2], p[3]) > 0 && (!k->is_last || is_thick(p));
 }
 
 /* Draws vertices that moved back towards their start until every tet is positive. */
@@ -71,7 +82,7 @@ static void draw_back(const laves__keeping *k) {
   for (int round = 0; bad; round++) {
     bad = false;
     for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(k->context, "features", t, layer->tet_count); t++) {
-      if (layer->tet[t][0] < 0 || is_positive(layer, t)) continue;
+      if (layer->tet[t][0] < 0 || is_positive(k, t)) continue;
       for (int c = 0; c < 4; c++) {
         const int32_t v = layer->tet[t][c];
         if (layer->depth[v] != 0 || v3_distance(layer->position[v], k->start[v]) == 0) continue;

@@ -1,9 +1,13 @@
 /* Whole files in.  The file is opened without waiting (a pipe without a writer would hold us for ever), judged by what was
- * opened rather than by its name, and is read into one block. */
+ * opened rather than by its name, and read in one piece.
+ *
+ * Pipes come in pieces, of which nobody knows how many: the block grows, up to a bound, and between pieces we wait a tenth of
+ * a second at most before the progress is asked again. */
 #include "io/file.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -41,32 +45,110 @@ static laves_result read_all(laves_context *context, int file, const char *path,
   return LAVES_OK;
 }
 
-laves_result laves__file_read(laves_context *context, const char *path, char **bytes, size_t *length, laves_error *error) {
+/* ---- regular files ---- */
+
+static laves_result read_regular(laves_context *context, int file, const struct stat *status, const char *path, char **bytes,
+                                 size_t *length, laves_error *error) {
+  const size_t size = (size_t)status->st_size;
+  *bytes = laves__alloc(context, size + 1, 1);
+  if (*bytes == NULL) return laves__fail_memory(context, error);
+  const laves_result result = read_all(context, file, path, *bytes, size, error);
+  if (result == LAVES_OK) {
+    *length = size;
+    return LAVES_OK;
+  }
+  laves__free(context, *bytes, size + 1, 1);
+  *bytes = NULL;
+  return result;
+}
+
+/* ---- pipes ---- */
+
+enum { POLL_MILLISECONDS = 100, PATIENCE = 10 };
+
+/* Bytes that grow; one more than `used` always has room. */
+typedef struct block {
+  char *bytes;
+  size_t capacity, used;
+  int waits; /* for a first writer */
+} block;
+
+/* Waits until the pipe has something or is closed, or a cancel is asked for. */
+static laves_result wait_for_pipe(laves_context *context, int file, const char *path, laves_error *error) {
+  struct pollfd one = {.fd = file, .events = POLLIN};
+  if (laves__cancelled(context, "reading", 0)) return laves__fail_cancelled(error);
+  if (poll(&one, 1, POLL_MILLISECONDS) < 0 && errno != EINTR) return fail_errno(error, path, "wait for");
+  return LAVES_OK;
+}
+
+/* Who writes to a named pipe may come a little later than we do. */
+static laves_result wait_for_writer(laves_context *context, laves_error *error) {
+  if (laves__cancelled(context, "reading", 0)) return laves__fail_cancelled(error);
+  poll(NULL, 0, POLL_MILLISECONDS);
+  return LAVES_OK;
+}
+
+static laves_result read_piece(laves_context *context, int file, const char *path, block *b, bool *ended, laves_error *error) {
+  if (!laves__grow(context, &b->bytes, &b->capacity, b->used + 65536, 1)) return laves__fail_memory(context, error);
+  const ssize_t got = read(file, b->bytes + b->used, b->capacity - 1 - b->used);
+  if (got < 0 && (errno == EAGAIN || errno == EINTR)) return wait_for_pipe(context, file, path, error);
+  if (got < 0) return fail_errno(error, path, "read");
+  if (got == 0 && b->used == 0 && b->waits++ < PATIENCE) return wait_for_writer(context, error);
+  *ended = got == 0;
+  b->used += (size_t)got;
+  if (b->used > LAVES__PIPE_BYTES)
+    return laves__fail(error, LAVES_ERROR_INPUT, "%s: the pipe gives more than %zu bytes; save them as a file and give that",
+                       path, LAVES__PIPE_BYTES);
+  return LAVES_OK;
+}
+
+static laves_result read_pipe(laves_context *context, int file, const char *path, char **bytes, size_t *length,
+                              laves_error *error) {
+  block b = {0};
+  bool ended = false;
   laves_result result = LAVES_OK;
+  while (result == LAVES_OK && !ended) result = read_piece(context, file, path, &b, &ended, error);
+  if (result == LAVES_OK && b.used == 0)
+    result = laves__fail(error, LAVES_ERROR_INPUT, "%s: the pipe is empty; nothing writes to it", path);
+  char *fitting = result == LAVES_OK ? laves__realloc(context, b.bytes, b.capacity, b.used + 1, 1) : NULL;
+  if (result == LAVES_OK && fitting == NULL) result = laves__fail_memory(context, error);
+  if (result != LAVES_OK) {
+    laves__free(context, b.bytes, b.capacity, 1);
+    return result;
+  }
+  fitting[b.used] = 0;
+  *bytes = fitting;
+  *length = b.used;
+  return LAVES_OK;
+}
+
+/* ---- both ---- */
+
+static laves_result read_path(laves_context *context, const char *path, bool may_be_pipe, char **bytes, size_t *length,
+                              laves_error *error) {
   *bytes = NULL;
   *length = 0;
   const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-  if (file < 0) {
-    return fail_errno(error, path, "open");
-  }
+  if (file < 0 && errno == ENXIO) return laves__fail(error, LAVES_ERROR_INPUT, "%s is a socket; give a regular file", path);
+  if (file < 0) return fail_errno(error, path, "open");
   struct stat status;
-  if (fstat(file, &status) != 0) {
+  laves_result result;
+  if (fstat(file, &status) != 0)
     result = fail_errno(error, path, "read");
-    goto done;
-  }
-  if (!S_ISREG(status.st_mode)) {
+  else if (S_ISREG(status.st_mode))
+    result = read_regular(context, file, &status, path, bytes, length, error);
+  else if (S_ISFIFO(status.st_mode) && may_be_pipe)
+    result = read_pipe(context, file, path, bytes, length, error);
+  else
     result = laves__fail(error, LAVES_ERROR_INPUT, "%s is %s; give a regular file", path, kind_of(status.st_mode));
-    goto done;
-  }
-  *length = (size_t)status.st_size;
-  *bytes = laves__alloc(context, *length + 1, 1);
-  result = *bytes == NULL ? laves__fail_memory(context, error) : read_all(context, file, path, *bytes, *length, error);
-  if (result != LAVES_OK) {
-    laves__free(context, *bytes, *length + 1, 1);
-    *bytes = NULL;
-    *length = 0;
-  }
-done:
   close(file);
   return result;
+}
+
+laves_result laves__file_read(laves_context *context, const char *path, char **bytes, size_t *length, laves_error *error) {
+  return read_path(context, path, false, bytes, length, error);
+}
+
+laves_result laves__input_read(laves_context *context, const char *path, char **bytes, size_t *length, laves_error *error) {
+  return read_path(context, path, true, bytes, length, error);
 }

@@ -136,6 +136,13 @@ static void open_temporary(laves__output *out, mode_t mode) {
   if (out->file >= 0 && mode) (void)fchmod(out->file, mode);
 }
 
+/* A pipe that nothing reads from would hold us for ever, so opening does not wait; writing does. */
+static void open_direct(laves__output *out) {
+  out->file = open(out->target, O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (out->file < 0 || fcntl(out->file, F_SETFL, fcntl(out->file, F_GETFL) & ~O_NONBLOCK) < 0)
+    fail_system(out, "write", out->target);
+}
+
 laves_result laves__output_open(laves__output *out, laves_context *context, const char *path) {
   memset(out, 0, sizeof *out);
   out->context = context;
@@ -147,8 +154,7 @@ laves_result laves__output_open(laves__output *out, laves_context *context, cons
   if (!out->buffer) {
     laves__output_fail_memory(out);
   } else if (out->direct) {
-    out->file = open(out->target, O_WRONLY | O_CLOEXEC);
-    if (out->file < 0) fail_system(out, "write", out->target);
+    open_direct(out);
   } else {
     open_temporary(out, mode);
   }

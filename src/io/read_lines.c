@@ -83,7 +83,7 @@ laves_result laves__lines_read(laves_context *context, const char *path, laves__
   char *bytes;
   size_t length;
   *lines = (laves__lines){0};
-  laves_result result = laves__file_read(context, path, &bytes, &length, error);
+  laves_result result = laves__input_read(context, path, &bytes, &length, error);
   if (result != LAVES_OK) return result;
   result = laves__lines_parse(context, path, bytes, length, lines, error);
   laves__free(context, bytes, length + 1, 1);

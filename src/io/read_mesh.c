@@ -36,11 +36,13 @@ static read_fn *find_reader(const laves__mesh_input *input) {
   return NULL;
 }
 
-/* Opens a file into the input's begin and end; free with close_file(). */
-static laves_result open_file(laves__mesh_input *input, const char *path, laves_error *error) {
+typedef laves_result load_fn(laves_context *context, const char *path, char **bytes, size_t *length, laves_error *error);
+
+/* Loads a file into the input's begin and end; free with close_file(). */
+static laves_result open_file(laves__mesh_input *input, const char *path, load_fn *load, laves_error *error) {
   char *bytes;
   size_t length;
-  const laves_result result = laves__file_read(input->context, path, &bytes, &length, error);
+  const laves_result result = load(input->context, path, &bytes, &length, error);
   if (result != LAVES_OK) return result;
   input->name = path;
   input->begin = bytes;
@@ -60,7 +62,7 @@ static laves_result read_part(laves__mesh_input *input, const char *path, int pa
   const int length = snprintf(name, sizeof name, "%.*s.%s", (int)tetgen_stem(path), path, endings[part]);
   if (length >= (int)sizeof name) return laves__fail(error, LAVES_ERROR_INPUT, "the file name is too long");
   laves_error ignored;
-  laves_result result = open_file(input, name, part == 2 ? &ignored : error);
+  laves_result result = open_file(input, name, laves__file_read, part == 2 ? &ignored : error);
   if (result == LAVES_ERROR_INPUT && part == 2) return LAVES_OK;
   if (result == LAVES_ERROR_MEMORY) return laves__fail_memory(input->context, error);
   if (result != LAVES_OK) return result;
@@ -81,7 +83,7 @@ static laves_result read_tetgen(laves__mesh_input *input, const char *path, lave
 }
 
 static laves_result read_one(laves__mesh_input *input, const char *path, laves_error *error) {
-  laves_result result = open_file(input, path, error);
+  laves_result result = open_file(input, path, laves__input_read, error);
   if (result != LAVES_OK) return result;
   read_fn *read = find_reader(input);
   if (read)

@@ -122,7 +122,7 @@ laves_result laves__background_load(laves_context *context, const char *path, co
   char *bytes;
   size_t length;
   *sizes = NULL;
-  laves_result result = laves__file_read(context, path, &bytes, &length, error);
+  laves_result result = laves__input_read(context, path, &bytes, &length, error);
   if (result != LAVES_OK) return result;
   result = laves__background_parse(context, path, bytes, length, array_name, sizes, error);
   laves__free(context, bytes, length + 1, 1);

@@ -8,6 +8,7 @@
 
 #include "domain/script.h"
 #include "io/file.h"
+#include "io/read_lines.h"
 
 laves_result laves_sizing_create(laves_context *context, laves_sizing **sizing, laves_error *error) {
   *sizing = laves__alloc_zeroed(context, 1, sizeof **sizing);
@@ -86,7 +87,7 @@ laves_result laves_sizing_add_script(laves_sizing *sizing, const char *path, lav
   laves__source s = {.kind = LAVES__SOURCE_SCRIPT};
   const char *slash = strrchr(path, '/');
   laves__progress_reset(context);
-  laves_result result = laves__file_read(context, path, &s.text, &s.text_length, error);
+  laves_result result = laves__input_read(context, path, &s.text, &s.text_length, error);
   if (result == LAVES_OK) result = copy_text(context, path, strlen(path), &s.name, &s.name_length, error);
   if (result == LAVES_OK && slash)
     result = copy_text(context, path, (size_t)(slash - path) + (slash == path), &s.folder, &s.folder_length, error);
@@ -144,6 +145,35 @@ laves_result laves_sizing_add_points(laves_sizing *sizing, const double *points,
 laves_result laves_sizing_add_curve(laves_sizing *sizing, const double *points, size_t count, double size, double radius,
                                     laves_error *error) {
   return add_place(sizing, LAVES__SOURCE_CURVE, points, count, size, radius, error);
+}
+
+/* Points that stand alone are one source, each polyline is one. */
+static laves_result add_lines(laves_sizing *sizing, const laves__lines *lines, double size, double radius, laves_error *error) {
+  const laves__line_list *list = &lines->list;
+  const size_t most = list->single_count > list->node_count ? list->single_count : list->node_count;
+  laves__vec3 *points = laves__alloc(sizing->context, most, sizeof *points);
+  if (!points) return laves__fail_memory(sizing->context, error);
+  laves_result result = LAVES_OK;
+  for (size_t i = 0; i < list->single_count; i++) points[i] = lines->points[list->single[i]];
+  if (list->single_count) result = laves_sizing_add_points(sizing, &points->x, list->single_count, size, radius, error);
+  for (size_t i = 0; i < list->node_count; i++) points[i] = lines->points[list->node[i]];
+  for (size_t i = 0; i < list->line_count && result == LAVES_OK; i++) {
+    const size_t first = laves__line_list_first(list, i);
+    result = laves_sizing_add_curve(sizing, &points[first].x, list->line_end[i] - first, size, radius, error);
+  }
+  laves__free(sizing->context, points, most, sizeof *points);
+  return result;
+}
+
+laves_result laves_sizing_add_curve_file(laves_sizing *sizing, const char *path, double size, double radius, laves_error *error) {
+  laves__lines lines;
+  const size_t before = sizing->count;
+  laves__progress_reset(sizing->context);
+  laves_result result = laves__lines_read(sizing->context, path, &lines, error);
+  if (result == LAVES_OK) result = add_lines(sizing, &lines, size, radius, error);
+  laves__lines_free(&lines);
+  while (result != LAVES_OK && sizing->count > before) free_source(sizing->context, &sizing->sources[--sizing->count]);
+  return result;
 }
 
 laves_result laves_sizing_add_tag(laves_sizing *sizing, const char *name, double size, double radius, laves_error *error) {

@@ -9,17 +9,12 @@
 
 enum { MEMORY_PER_BYTE = 150000 };
 
-/* Stops the program, so that the fuzzer keeps the input, when a promise does not hold. */
-static void require(bool condition) {
-  if (!condition) abort();
-}
-
 static void check_sizes(const laves__background_sizes *sizes) {
   static const laves__vec3 places[] = {{0, 0, 0},          {0.3, 0.4, 0.5},     {1, 1, 1},         {-7, 8, 9},
                                        {1e9, -1e9, 1e-12}, {1e200, 1e200, 0.5}, {NAN, INFINITY, 0}};
   double found[LAVES__COUNT_OF(places)];
   laves__background_evaluate(sizes, LAVES__COUNT_OF(places), places, found);
-  for (size_t i = 0; i < LAVES__COUNT_OF(places); i++) require(found[i] > 0 && isfinite(found[i]));
+  for (size_t i = 0; i < LAVES__COUNT_OF(places); i++) FUZZ_REQUIRE(found[i] > 0 && isfinite(found[i]));
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length) {
@@ -27,15 +22,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length) {
   options.thread_count = 1;
   options.memory_limit = 300000 + (size_t)MEMORY_PER_BYTE * length;
   laves_context *context = laves_context_create(&options);
-  require(context != NULL);
+  FUZZ_REQUIRE(context != NULL);
   laves__background_sizes *sizes;
   laves_error error = {0};
   const laves_result result = laves__background_parse(context, "input", (const char *)bytes, length, NULL, &sizes, &error);
-  require(result == LAVES_OK || (result == LAVES_ERROR_INPUT && error.result == result && strlen(error.text) > 10));
-  require((result == LAVES_OK) == (sizes != NULL));
+  FUZZ_REQUIRE(result == LAVES_OK || (result == LAVES_ERROR_INPUT && error.result == result && strlen(error.text) > 10));
+  FUZZ_REQUIRE((result == LAVES_OK) == (sizes != NULL));
   if (sizes) check_sizes(sizes);
   laves__background_free(sizes);
-  require(laves_context_bytes(context) == 0);
+  FUZZ_REQUIRE(laves_context_bytes(context) == 0);
   laves_context_free(context);
   return 0;
 }

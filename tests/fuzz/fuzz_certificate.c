@@ -6,12 +6,6 @@
 #include "fuzz/fuzz_target.h"
 #include "io/certificate_table.h"
 
-/* Stops the program, so that the fuzzer keeps the input, when a promise does not hold. */
-#define FUZZ_REQUIRE(condition) \
-  do {                          \
-    if (!(condition)) abort();  \
-  } while (0)
-
 static void require_ranges(const laves_certificate *c) {
   FUZZ_REQUIRE(strlen(c->mesh_hash) < sizeof c->mesh_hash && strlen(c->input_name) < sizeof c->input_name);
   FUZZ_REQUIRE(c->options.align >= LAVES_ALIGN_NONE && c->options.align <= LAVES_ALIGN_ROTATION);

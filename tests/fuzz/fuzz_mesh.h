@@ -8,12 +8,6 @@
 #include "fuzz/fuzz_target.h"
 #include "io/mesh_input.h"
 
-/* Stops the program, so that the fuzzer keeps the input, when a promise does not hold. */
-#define FUZZ_REQUIRE(condition) \
-  do {                          \
-    if (!(condition)) abort();  \
-  } while (0)
-
 typedef laves_result fuzz_read_fn(laves__mesh_input *input, laves_error *error);
 
 /* Indices are in range, as everything that works on meshes relies on. */

@@ -6,12 +6,6 @@
 #include "domain/oracle.h"
 #include "fuzz/fuzz_target.h"
 
-/* Stops the program, so that the fuzzer keeps the input, when a promise does not hold. */
-#define FUZZ_REQUIRE(condition) \
-  do {                          \
-    if (!(condition)) abort();  \
-  } while (0)
-
 /* Two hundred thousand steps of Lua are enough for the fuzzer. */
 static bool stop_soon(void *user, const char *phase, double fraction) {
   int *left = user;

@@ -8,12 +8,6 @@
 #include "domain/surface_input.h"
 #include "fuzz/fuzz_target.h"
 
-/* Stops the program, so that the fuzzer keeps the input, when a promise does not hold. */
-#define FUZZ_REQUIRE(condition) \
-  do {                          \
-    if (!(condition)) abort();  \
-  } while (0)
-
 /* Memory that a file of this many bytes may take. The densest content is a PLY of single bytes: a point of three bytes
  * takes 24 in memory, a triangle of one byte (a further corner of a polygon) 12 and a tag of 4; arrays grow by doubling
  * and hold old and new at once. Tag names take as many bytes again, and a table. */

@@ -1,6 +1,6 @@
 # Fuzz targets: each fuzz/fuzz_NAME.c with its seeds in fuzz/corpus/NAME/ is
 #   fuzz_NAME    a libFuzzer program, with LAVES_FUZZERS=ON and clang; the library is compiled again with its instruments
-#   replay_NAME  the same target with replay.c, and a CTest test that runs all seeds, with any compiler
+#   replay_NAME  the same target with replay.c, and CTest tests that run all seeds, and all of them altered, with any compiler
 set(LAVES_FUZZ_FOLDER ${CMAKE_CURRENT_LIST_DIR})
 file(GLOB LAVES_FUZZ_TARGETS CONFIGURE_DEPENDS ${LAVES_FUZZ_FOLDER}/fuzz_*.c)
 
@@ -26,6 +26,10 @@ foreach(source ${LAVES_FUZZ_TARGETS})
   target_link_libraries(replay_${name} PRIVATE laves m)
   add_test(NAME fuzz/replay_${name} COMMAND replay_${name} ${LAVES_FUZZ_FOLDER}/corpus/${name})
   set_tests_properties(fuzz/replay_${name} PROPERTIES LABELS fuzz)
+  if(NOT name STREQUAL "pipeline" AND NOT LAVES_SANITIZE) # a mesh for each byte would take too long; so would sanitizers
+    add_test(NAME fuzz/alter_${name} COMMAND replay_${name} --alter ${LAVES_FUZZ_FOLDER}/corpus/${name})
+    set_tests_properties(fuzz/alter_${name} PROPERTIES LABELS fuzz TIMEOUT 600)
+  endif()
   set(programs replay_${name})
   if(LAVES_FUZZERS)
     add_executable(${target} ${source})

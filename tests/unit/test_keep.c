@@ -26,7 +26,7 @@ static void begin(kept *k, shape surface, double size, int threads, const bool *
   const laves__feature_wish wish = {.angle = 40, .size = size};
   assert_int_equal(laves__features_find(k->s.context, &k->s.domain->oracle, &wish, &k->features, NULL), LAVES_OK);
   k->s.frame.features = &k->features;
-  assert_int_equal(laves__keep_features(&k->s.frame, free_vertices, &k->s.layer, &k->counts, NULL), LAVES_OK);
+  assert_int_equal(laves__keep_features(&k->s.frame, free_vertices, false, &k->s.layer, &k->counts, NULL), LAVES_OK);
 }
 
 static void end(kept *k) {

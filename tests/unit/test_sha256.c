@@ -7,7 +7,7 @@
 /* cmocka.h wants the headers above. */
 #include <cmocka.h>
 
-#include "certify/sha256.h"
+#include "base/sha256.h"
 
 /* Adds the text in pieces of the given size. */
 static void digest(const char *text, size_t piece, char hex[65]) {

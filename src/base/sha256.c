@@ -1,5 +1,5 @@
 /* SHA-256 as FIPS 180-4 [fips180-4] defines it; section and function names are those of the standard. */
-#include "certify/sha256.h"
+#include "base/sha256.h"
 
 #include <string.h>
 
@@ -87,4 +87,13 @@ void laves__sha256_text(const unsigned char digest[LAVES__SHA256_BYTES], char te
     text[2 * i + 1] = digits[digest[i] & 15];
   }
   text[64] = 0;
+}
+
+void laves__sha256_of(const void *bytes, size_t count, char text[65]) {
+  laves__sha256 hash;
+  unsigned char digest[LAVES__SHA256_BYTES];
+  laves__sha256_start(&hash);
+  laves__sha256_add(&hash, bytes, count);
+  laves__sha256_finish(&hash, digest);
+  laves__sha256_text(digest, text);
 }

@@ -1,6 +1,6 @@
 /* SHA-256, for hashes that anyone can recompute with the tools at hand. */
-#ifndef LAVES_CERTIFY_SHA256_H
-#define LAVES_CERTIFY_SHA256_H
+#ifndef LAVES_BASE_SHA256_H
+#define LAVES_BASE_SHA256_H
 
 #include <stddef.h>
 #include <stdint.h>
@@ -19,5 +19,7 @@ void laves__sha256_finish(laves__sha256 *hash, unsigned char digest[LAVES__SHA25
 
 /* 64 hexadecimal digits and NUL. */
 void laves__sha256_text(const unsigned char digest[LAVES__SHA256_BYTES], char text[65]);
+/* The same of a block of bytes. */
+void laves__sha256_of(const void *bytes, size_t count, char text[65]);
 
 #endif
