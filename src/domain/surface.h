@@ -10,6 +10,7 @@
  *   surface_mend.c      cracks, repeats and directions of surfaces that are not closed
  *   surface_cut.c       what of triangles that meet others bounds the solid
  *   surface_direct.c    which way parts within parts face
+ *   surface_stitch.c    T-junctions
  *   surface_open.c      what stays open: {winding number = 1/2}
  *   surface_part.c      closed parts, which can be regions of the mesh
  *   surface_sample.c    samples, thin places
@@ -295,7 +296,10 @@ bool laves__surface_direct_parts(laves__surface *s, const laves__crossings *c, l
 
 /* Makes a surface with open or contradicting edges as closed and as consistent as it can be. Its tree must be built anew. */
 bool laves__surface_mend(laves__surface *s, size_t open_edges);
-/* Which faces bound {winding number > 1/2} somewhere (keep); marks those that do so in part. */
+/* Parts faces at open edges on which points of other open edges stand (T-junctions); parted: whether there were any. `across` is
+ * to be made anew. False when memory is short. */
+bool laves__surface_stitch(laves__surface *s, bool *parted);
+/* Which faces bound {winding number > level} somewhere (keep); marks those that do so in part. */
 bool laves__surface_judge_open(laves__surface *s, bool *keep);
 bool laves__surface_build_rim(laves__surface *s);
 /* Share of a grid of points of the box that lies inside. */

@@ -1,7 +1,7 @@
 /* Mends what scans and exports do to surfaces that were closed once: cracks, repeats, faces turned over.
  *
  * In: a welded surface with open or contradicting edges.  Out: the same with nearly equal points made one where that closes
- * edges, with one of each repeated face, and with directions that agree over edges.
+ * edges, with one of each repeated face, with T-junctions stitched, and with directions that agree over edges.
  *
  * Several tolerances are tried, from 1e-6 to 1e-4 of the diagonal but at most half the shortest edge between two faces; the least
  * one that leaves the fewest open edges is taken. Directions are carried from face to face over edges with exactly two faces;
@@ -223,17 +223,27 @@ static bool agree_on_directions(laves__surface *s) {
   return done;
 }
 
-bool laves__surface_mend(laves__surface *s, size_t open_edges) {
+/* Makes nearly equal points one where that closes edges. */
+static bool close_cracks(laves__surface *s, size_t open_edges) {
   laves__surface best = {.context = s->context};
-  laves_domain_info scratch = {0};
-  bool done = try_tolerances(s, open_edges, &best);
+  const bool done = try_tolerances(s, open_edges, &best);
   if (done) {
     memcpy(s->faces, best.faces, best.face_count * sizeof *s->faces);
     if (s->tags) memcpy(s->tags, best.tags, best.face_count * sizeof *s->tags);
     memcpy(s->sources, best.sources, best.face_count * sizeof *s->sources);
     s->face_count = best.face_count;
-    done = laves__surface_topology(s, &scratch) && agree_on_directions(s);
   }
   trial_free(&best);
   return done;
+}
+
+bool laves__surface_mend(laves__surface *s, size_t open_edges) {
+  laves_domain_info facts = {0}, scratch = {0};
+  bool parted = false;
+  if (!close_cracks(s, open_edges) || !laves__surface_stitch(s, &parted) || !laves__surface_topology(s, &facts)) return false;
+  /* Stitched edges that end at points nearly equal are cracks. */
+  if (parted && facts.defects[LAVES_DEFECT_OPEN_EDGE] > 0) {
+    if (!close_cracks(s, facts.defects[LAVES_DEFECT_OPEN_EDGE]) || !laves__surface_topology(s, &scratch)) return false;
+  }
+  return agree_on_directions(s);
 }

@@ -201,8 +201,46 @@ static void what_encloses_nothing_is_refused(void **unused) {
   laves_context_free(context);
 }
 
+/* A box of which one side is finer than the others, so that points stand on edges; moved a little, in one case. */
+static void t_junctions_are_stitched(void **unused) {
+  (void)unused;
+  laves_context *context = laves_context_create(NULL);
+  for (int k = 0; k < 3; k++) {
+    const double off = k == 1 ? 1e-6 : 0;
+    shape coarse = shape_box((const double[3]){0, 0, 0}, (const double[3]){2, 2, 2}, 1);
+    shape fine = shape_box((const double[3]){0, 0, 0}, (const double[3]){2, 2, 2}, k == 2 ? 7 : 4);
+    for (size_t f = coarse.triangle_count; f-- > 0;) { /* the coarse one loses its side x = 2, the fine one all others */
+      bool side = true;
+      for (int c = 0; c < 3; c++) side = side && coarse.points[3 * coarse.triangles[3 * f + (size_t)c]] == 2;
+      if (side) shape_drop(&coarse, f, 1);
+    }
+    for (size_t f = fine.triangle_count; f-- > 0;) {
+      bool side = true;
+      for (int c = 0; c < 3; c++) side = side && fine.points[3 * fine.triangles[3 * f + (size_t)c]] == 2;
+      if (!side) shape_drop(&fine, f, 1);
+    }
+    for (size_t i = 0; i < fine.point_count; i++) fine.points[3 * i] -= off * (double)(i % 3);
+    shape_append(&coarse, &fine);
+    laves_domain *domain = NULL;
+    laves_error error = {.text = ""};
+    if (laves_domain_from_triangles(context, coarse.points, coarse.point_count, coarse.triangles, coarse.triangle_count, NULL,
+                                    &domain, &error))
+      fail_msg("%s", error.text);
+    assert_true(domain->info.defects[LAVES_DEFECT_OPEN_EDGE] > 8);
+    assert_int_equal(domain->info.open_edges_left, 0);
+    assert_false(domain->info.winding);
+    assert_true(fabs(domain->info.volume - 8) < 1e-4);
+    laves_domain_free(domain);
+    shape_free(&coarse);
+    shape_free(&fine);
+  }
+  assert_int_equal(laves_context_bytes(context), 0);
+  laves_context_free(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(t_junctions_are_stitched),
       cmocka_unit_test(a_hole_is_closed),
       cmocka_unit_test(feet_part_in_from_out),
       cmocka_unit_test(sides_stay_certain),
