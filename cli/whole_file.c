@@ -27,7 +27,7 @@ static bool find_target(whole_file *out, const char *path, mode_t *mode, bool *d
     errno = ENAMETOOLONG;
     return false;
   }
-  strcpy(out->target, path);
+  memcpy(out->target, path, strlen(path) + 1);
   if (stat(path, &status) != 0) return true;
   *direct = !S_ISREG(status.st_mode) || is_descriptor(path);
   *mode = status.st_mode & 0777;

@@ -46,13 +46,27 @@ bool laves__may_fit(const laves_context *context, double bytes);
  */
 double laves__room(const laves_context *context);
 
+/* ---- progress ---- */
+
+/* Reports and asks: true when the caller wants to cancel; once cancelled it stays so until laves__progress_reset().
+ * Call only from the thread that entered the library. `phase` is a static string, fraction in 0..1. */
+bool laves__cancelled(laves_context *context, const char *phase, double fraction);
+/* The same for item `index` of `count` of a loop whose turns take a microsecond at most: asks at some of them only. */
+static inline bool laves__cancelled_at(laves_context *context, const char *phase, size_t index, size_t count) {
+  enum { TURNS = 1 << 14 };
+  return index % TURNS == 0 && laves__cancelled(context, phase, (double)index / (double)count);
+}
+/* Whether a cancel has been asked for; callable from any thread. */
+bool laves__is_cancelled(const laves_context *context);
+/* Forget an earlier cancel; at the start of each public call. */
+void laves__progress_reset(laves_context *context);
+
 /* ---- errors ---- */
 
 /* Fills error (may be NULL) with result and a printf sentence, and returns result. */
 laves_result laves__fail(laves_error *error, laves_result result, const char *format, ...) __attribute__((format(printf, 3, 4)));
 void laves__tell_memory(const laves_context *context, laves_error *error);
 void laves__tell_cancelled(laves_error *error);
-bool laves__is_cancelled(const laves_context *context);
 /* These two are inline, so that compilers and analysers see that they never return LAVES_OK. */
 static inline laves_result laves__fail_cancelled(laves_error *error) {
   laves__tell_cancelled(error);
@@ -68,21 +82,6 @@ static inline laves_result laves__fail_memory(const laves_context *context, lave
 /* That `bytes` more, an estimate, are beyond the limit: for `what`, a noun, and what would fit, a clause. */
 laves_result laves__fail_room(const laves_context *context, double bytes, const char *what, const char *remedy,
                               laves_error *error);
-
-/* ---- progress ---- */
-
-/* Reports and asks: true when the caller wants to cancel; once cancelled it stays so until laves__progress_reset().
- * Call only from the thread that entered the library. `phase` is a static string, fraction in 0..1. */
-bool laves__cancelled(laves_context *context, const char *phase, double fraction);
-/* The same for item `index` of `count` of a loop whose turns take a microsecond at most: asks at some of them only. */
-static inline bool laves__cancelled_at(laves_context *context, const char *phase, size_t index, size_t count) {
-  enum { TURNS = 1 << 14 };
-  return index % TURNS == 0 && laves__cancelled(context, phase, (double)index / (double)count);
-}
-/* Whether a cancel has been asked for; callable from any thread. */
-bool laves__is_cancelled(const laves_context *context);
-/* Forget an earlier cancel; at the start of each public call. */
-void laves__progress_reset(laves_context *context);
 
 /* ---- threads ---- */
 

@@ -8,7 +8,7 @@
  *
  * Items are formatted by all threads in waves: every block of a wave has a slot of its own in one scratch block, and the
  * slots are written in order when the wave is done, so the bytes do not depend on the number of threads. */
-#define _GNU_SOURCE /* O_TMPFILE */
+#define _GNU_SOURCE /* O_TMPFILE; NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp): the C library's name */
 #include "io/output.h"
 
 #include <errno.h>
@@ -275,7 +275,7 @@ static void keep_old(laves__output *out) {
   if (out->direct) return;
   const size_t length = strlen(out->temporary) - strlen(temporary_ending);
   memcpy(out->kept, out->temporary, length);
-  strcpy(out->kept + length, kept_ending);
+  memcpy(out->kept + length, kept_ending, sizeof kept_ending);
   const bool kept = link(out->target, out->kept) == 0;
   out->can_undo = kept || errno == ENOENT;
   if (!kept) out->kept[0] = 0;
