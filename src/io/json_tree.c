@@ -270,8 +270,6 @@ void laves__json_free(laves__json_tree *tree) {
 
 /* ---- asking ---- */
 
-bool laves__json_is(const laves__json *value, laves__json_kind kind) { return value && value->kind == kind; }
-
 const laves__json *laves__json_member(const laves__json *object, const char *key) {
   if (!laves__json_is(object, LAVES__JSON_OBJECT)) return NULL;
   const laves__json *value = object + 1;

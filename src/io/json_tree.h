@@ -46,7 +46,7 @@ laves_result laves__json_parse(laves_context *context, const char *bytes, size_t
 void laves__json_free(laves__json_tree *tree);
 
 /* False for NULL. */
-bool laves__json_is(const laves__json *value, laves__json_kind kind);
+static inline bool laves__json_is(const laves__json *value, laves__json_kind kind) { return value && value->kind == kind; }
 /* Of any kind but these NULL is returned, as for what is not there. */
 const laves__json *laves__json_member(const laves__json *object, const char *key);
 const laves__json *laves__json_at(const laves__json *array, size_t index);

@@ -42,7 +42,7 @@ static bool get_text(const laves__json *value, char *to, size_t capacity) {
   to[0] = 0;
   if (is_null(value)) return true;
   if (!is_text(value) || strlen(value->text) >= capacity) return false;
-  strcpy(to, value->text);
+  memcpy(to, value->text, strlen(value->text) + 1);
   return true;
 }
 

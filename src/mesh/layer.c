@@ -86,16 +86,22 @@ typedef struct vertex_array {
   void *longer;
 } vertex_array;
 
+static void *block_of(const vertex_array *v) {
+  void *block;
+  memcpy(&block, v->array, sizeof block);
+  return block;
+}
+
 /* The longer arrays are all made before the first takes its place, for then nothing has to be undone when memory is short. */
 static bool lengthen(laves_context *context, vertex_array *all, size_t array_count, size_t old, size_t extra) {
   bool memory = true;
   for (size_t i = 0; i < array_count; i++)
-    if (*(void **)all[i].array) memory = (all[i].longer = laves__alloc(context, old + extra, all[i].size)) && memory;
+    if (block_of(&all[i])) memory = (all[i].longer = laves__alloc(context, old + extra, all[i].size)) && memory;
   for (size_t i = 0; i < array_count; i++) {
-    void **block = all[i].array;
-    if (memory && *block) memcpy(all[i].longer, *block, old * all[i].size);
-    laves__free(context, memory ? *block : all[i].longer, memory ? old : old + extra, all[i].size);
-    if (memory) *block = all[i].longer;
+    void *block = block_of(&all[i]);
+    if (memory && block && all[i].longer) memcpy(all[i].longer, block, old * all[i].size);
+    laves__free(context, memory ? block : all[i].longer, memory ? old : old + extra, all[i].size);
+    if (memory) memcpy(all[i].array, &all[i].longer, sizeof all[i].longer);
   }
   return memory;
 }
