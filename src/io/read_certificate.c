@@ -47,7 +47,7 @@ static bool get_text(const laves__json *value, char *to, size_t capacity) {
 }
 
 static bool get_integer(const laves__json *value, int64_t least, int64_t *to) {
-  if (!laves__json_is(value, LAVES__JSON_INTEGER)) return false;
+  if (!value || value->kind != LAVES__JSON_INTEGER) return false;
   *to = value->integer;
   return *to >= least && (double)*to <= INTEGER_MAX;
 }
