@@ -357,7 +357,12 @@ static laves_result solve(laves__surface *s, bool close_holes, laves_domain_info
   }
   done = done && laves__surface_normals(s);
   if (done && s->face_count == judged) done = laves__surface_genus(s, info);
-  if (!done) result = laves__fail_memory(s->context, error);
+  if (!done && s->crowded)
+    result = laves__fail(
+        error, LAVES_ERROR_INPUT,
+        "too many pairs of the %zu faces lie upon or across one another to be compared; it is no solid's surface", s->face_count);
+  else if (!done)
+    result = laves__fail_memory(s->context, error);
 clean_up:
   laves__crossings_free(s->context, &crossings);
   return result;

@@ -147,6 +147,7 @@ typedef struct laves__surface {
   laves__vec3 *point_normals; /* [point_capacity] weighted by angle */
   laves__bvh bvh;
   double diagonal;
+  bool crowded;       /* more pairs of faces lie close together than can be compared */
   laves__vec3 origin; /* input coordinates of the local zero point */
   /* Where normals do not tell the sign, the winding number does: at partial faces and at doubtful points and edges. */
   bool needs_winding;
@@ -224,9 +225,9 @@ typedef struct laves__crossings {
   size_t count, capacity;
 } laves__crossings;
 
-/* All pairs of triangles that cross, overlap, or touch other than in common points and edges. False when memory is short
- * or on a cancel. */
-bool laves__surface_crossings(const laves__surface *s, laves__crossings *all);
+/* All pairs of triangles that cross, overlap, or touch other than in common points and edges. False when memory is short, on a
+ * cancel, or when they are too many, which sets s->crowded. */
+bool laves__surface_crossings(laves__surface *s, laves__crossings *all);
 /* Counts them in info, and notes them in s->defects. False when memory is short. */
 bool laves__surface_note_crossings(const laves__surface *s, const laves__crossings *c, laves_domain_info *info);
 void laves__crossings_free(laves_context *context, laves__crossings *c);

@@ -6,6 +6,7 @@
  * an edge of one passes through the other, or when they lie in one plane and overlap there. With one common point the
  * opposite edges are what can pass; with two, they can only lie folded upon each other. Sides are decided exactly
  * [shewchuk1997]; in a plane, in double precision after projection along the largest coordinate of the normal. */
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -132,16 +133,22 @@ static bool faces_meet(const laves__surface *s, uint32_t a, uint32_t b) {
 
 /* ---- all pairs ---- */
 
+/* More pairs than these and so many for each face are not looked at, or not listed: time and memory would grow with the square of
+ * the faces. Real models compare some tens for each face. */
+static const size_t asked_max = 300000000, asked_per_face = 200, found_max = 10000000, found_per_face = 50;
+
 typedef struct finder {
   const laves__surface *s;
   laves__crossings *found; /* one for each worker */
   bool *short_of_memory;
+  atomic_size_t asked, crossing; /* pairs, of all workers; whether they pass the limits does not depend on who counts */
 } finder;
 
 typedef struct question {
   finder *f;
   uint32_t first, last; /* the triangles that ask */
   laves__box3 box[LAVES__LEAF_MAX];
+  size_t asked, crossing;
   int worker;
 } question;
 
@@ -155,20 +162,28 @@ static laves__box3 face_box(const laves__surface *s, uint32_t slot) {
   return (laves__box3){v3_min(t->a, v3_min(t->b, t->c)), v3_max(t->a, v3_max(t->b, t->c))};
 }
 
-static void add_pair(const question *q, uint32_t a, uint32_t b) {
+static bool is_crowded(finder *f) {
+  const size_t faces = f->s->face_count;
+  return atomic_load(&f->asked) > asked_max + asked_per_face * faces ||
+         atomic_load(&f->crossing) > found_max + found_per_face * faces;
+}
+
+static void add_pair(question *q, uint32_t a, uint32_t b) {
   laves__crossings *c = &q->f->found[q->worker];
   if (!laves__grow(q->f->s->context, &c->pairs, &c->capacity, c->count + 1, sizeof *c->pairs)) {
     q->f->short_of_memory[q->worker] = true;
     return;
   }
+  q->crossing++;
   c->pairs[c->count][0] = a;
   c->pairs[c->count++][1] = b;
 }
 
 static void ask(void *user, uint32_t slot) {
-  const question *q = user;
+  question *q = user;
   const laves__surface *s = q->f->s;
-  if (slot <= q->first) return;
+  if (slot <= q->first || q->f->short_of_memory[q->worker]) return;
+  q->asked++;
   const laves__box3 box = face_box(s, slot);
   for (uint32_t mine = q->first; mine <= q->last && mine < slot; mine++)
     if (!boxes_apart(q->box[mine - q->first], box) && faces_meet(s, mine, slot)) add_pair(q, mine, slot);
@@ -178,7 +193,7 @@ static void ask(void *user, uint32_t slot) {
 static void find_in_range(void *user, size_t begin, size_t end, int worker) {
   finder *f = user;
   const laves__bvh *bvh = &f->s->bvh;
-  for (size_t k = begin; k < end; k++)
+  for (size_t k = begin; k < end && !is_crowded(f) && !laves__is_cancelled(f->s->context); k++)
     for (int i = 0; i < 4; i++) {
       const uint32_t child = bvh->nodes[k].child[i];
       if (!(child & LAVES__LEAF_BIT) || !laves__bvh_is_used(&bvh->nodes[k], i)) continue;
@@ -189,6 +204,8 @@ static void find_in_range(void *user, size_t begin, size_t end, int worker) {
         whole = box3_add(box3_add(whole, b.lower), b.upper);
       }
       laves__bvh_overlaps(bvh, whole, ask, &q);
+      atomic_fetch_add(&f->asked, q.asked);
+      atomic_fetch_add(&f->crossing, q.crossing);
     }
 }
 
@@ -212,7 +229,7 @@ static bool gather(laves_context *context, const laves__crossings *found, int wo
   return true;
 }
 
-bool laves__surface_crossings(const laves__surface *s, laves__crossings *all) {
+bool laves__surface_crossings(laves__surface *s, laves__crossings *all) {
   laves_context *context = s->context;
   const int workers = laves__workers(context);
   const size_t count = (size_t)workers;
@@ -220,10 +237,11 @@ bool laves__surface_crossings(const laves__surface *s, laves__crossings *all) {
   bool *short_of_memory = laves__alloc_zeroed(context, count, sizeof *short_of_memory);
   bool done = found && short_of_memory;
   if (done) {
-    finder f = {s, found, short_of_memory};
+    finder f = {.s = s, .found = found, .short_of_memory = short_of_memory};
     done = laves__parallel_for(context, "surface", s->bvh.node_count, 64, find_in_range, &f);
     for (int w = 0; w < workers; w++) done = done && !short_of_memory[w];
-    done = done && gather(context, found, workers, all);
+    s->crowded = is_crowded(&f);
+    done = done && !s->crowded && gather(context, found, workers, all);
   }
   for (int w = 0; found && w < workers; w++) laves__crossings_free(context, &found[w]);
   laves__free(context, found, count, sizeof *found);

@@ -2,6 +2,9 @@
 find_package(Python3 COMPONENTS Interpreter)
 if(TARGET laves-program AND Python3_FOUND)
   file(GLOB LAVES_CLI_CASES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cli/*.case)
+  if(LAVES_SANITIZE)
+    list(FILTER LAVES_CLI_CASES EXCLUDE REGEX address_space)
+  endif()
   foreach(case ${LAVES_CLI_CASES})
     get_filename_component(name ${case} NAME_WE)
     add_test(NAME cli/${name}
