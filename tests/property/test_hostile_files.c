@@ -16,8 +16,8 @@
 #include <cmocka.h>
 
 #include <zlib.h>
-#include "fixtures/stride.h"
 
+#include "fixtures/stride.h"
 #include "laves/laves.h"
 
 static char folder[] = "/tmp/laves-hostile-XXXXXX";
