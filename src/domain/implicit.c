@@ -256,7 +256,10 @@ static laves_result build_tape(implicit *s, const char *name, laves__vec3 origin
 
 static laves_result find_bounds(implicit *s, const char *name, laves__box3 *box, laves_error *error) {
   *box = s->model.shape.box;
-  switch (laves__bounds_find(&s->tape, box)) {
+  laves_context *context = s->model.expression.context;
+  switch (laves__bounds_find(context, &s->tape, box)) {
+    case LAVES__BOUNDS_CANCELLED:
+      return laves__fail_cancelled(error);
     case LAVES__BOUNDS_EMPTY:
       return laves__fail(error, LAVES_ERROR_INPUT, "%s: the solid is empty: nothing is inside", name);
     case LAVES__BOUNDS_ENDLESS:
