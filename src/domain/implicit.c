@@ -197,9 +197,10 @@ static bool holds(laves__box3 box, laves__vec3 p) {
          p.z < box.upper.z;
 }
 
-/* A cell that the surface crosses gives the foot of its centre, if that lies within the cell, so feet come about evenly. */
+/* After a cancel what is left has no samples; the caller asks whether there was one.
+ * A cell that the surface crosses gives the foot of its centre, if that lies within the cell, so feet come about evenly. */
 static void sample_cell(sampler *s, laves__box3 cell, int depth) {
-  if (s->count == s->capacity) return;
+  if (s->count == s->capacity || laves__cancelled(s->solid->model.expression.context, "samples", 0)) return;
   const laves__vec3 c = box3_centre(cell), half = v3_sub(cell.upper, c);
   if (side(s->solid, c, v3_norm(half), half) != LAVES__UNDECIDED) return;
   if (depth == 0) {
