@@ -89,11 +89,16 @@ void laves__sha256_text(const unsigned char digest[LAVES__SHA256_BYTES], char te
   text[64] = 0;
 }
 
-void laves__sha256_of(const void *bytes, size_t count, char text[65]) {
+bool laves__sha256_of(laves_context *context, const void *bytes, size_t count, char text[65]) {
+  enum { PIECE_BYTES = 1 << 20 }; /* between two questions whether to cancel: some milliseconds */
   laves__sha256 hash;
   unsigned char digest[LAVES__SHA256_BYTES];
   laves__sha256_start(&hash);
-  laves__sha256_add(&hash, bytes, count);
+  for (size_t done = 0; done < count; done += PIECE_BYTES) {
+    if (laves__cancelled(context, "read", 1)) return false;
+    laves__sha256_add(&hash, (const unsigned char *)bytes + done, count - done < PIECE_BYTES ? count - done : PIECE_BYTES);
+  }
   laves__sha256_finish(&hash, digest);
   laves__sha256_text(digest, text);
+  return true;
 }

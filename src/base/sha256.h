@@ -2,8 +2,7 @@
 #ifndef LAVES_BASE_SHA256_H
 #define LAVES_BASE_SHA256_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include "base/base.h"
 
 enum { LAVES__SHA256_BYTES = 32 };
 
@@ -19,7 +18,7 @@ void laves__sha256_finish(laves__sha256 *hash, unsigned char digest[LAVES__SHA25
 
 /* 64 hexadecimal digits and NUL. */
 void laves__sha256_text(const unsigned char digest[LAVES__SHA256_BYTES], char text[65]);
-/* The same of a block of bytes. */
-void laves__sha256_of(const void *bytes, size_t count, char text[65]);
+/* The same of a block of bytes, such as a file; false when cancelled. */
+bool laves__sha256_of(laves_context *context, const void *bytes, size_t count, char text[65]);
 
 #endif

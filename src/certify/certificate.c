@@ -73,9 +73,9 @@ static laves_result describe_input(laves_context *context, const laves_certify_o
   size_t length;
   const laves_result result = laves__file_read(context, options->input, &bytes, &length, error);
   if (result != LAVES_OK) return result;
-  laves__sha256_of(bytes, length, c->input_hash);
+  const bool hashed = laves__sha256_of(context, bytes, length, c->input_hash);
   laves__free(context, bytes, length + 1, 1);
-  return LAVES_OK;
+  return hashed ? LAVES_OK : laves__fail_cancelled(error);
 }
 
 static void note_making(const laves_certify_options *options, laves_certificate *c) {

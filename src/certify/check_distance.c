@@ -329,7 +329,9 @@ static laves_result list_face_samples(laves_context *context, const measuring *m
   size_t count = oracle->sample(oracle->self, spacing, points, room);
   if (count > room) count = room;
   laves_result result = LAVES_OK;
-  if (laves__grow(context, &samples->items, &samples->capacity, samples->count + count, sizeof *samples->items)) {
+  if (laves__is_cancelled(context)) {
+    result = laves__fail_cancelled(error);
+  } else if (laves__grow(context, &samples->items, &samples->capacity, samples->count + count, sizeof *samples->items)) {
     for (size_t i = 0; i < count; i++) samples->items[samples->count++] = sample_at(v3_add(points[i], oracle->origin), 1, 0);
   } else {
     result = laves__fail_memory(context, error);
@@ -349,7 +351,9 @@ static laves_result list_found_samples(laves_context *context, const measuring *
   for (double wider = spacing; count == 0 && wider < m->reach_max && !laves__is_cancelled(context); wider *= 2)
     count = laves__sample_surface(context, oracle, m->tree, wider, found, room);
   laves_result result = LAVES_OK;
-  if (laves__grow(context, &samples->items, &samples->capacity, samples->count + count, sizeof *samples->items)) {
+  if (laves__is_cancelled(context)) {
+    result = laves__fail_cancelled(error);
+  } else if (laves__grow(context, &samples->items, &samples->capacity, samples->count + count, sizeof *samples->items)) {
     for (size_t i = 0; i < count; i++)
       samples->items[samples->count++] = sample_at(v3_add(found[i].point, oracle->origin), found[i].weight, 0);
   } else {

@@ -82,10 +82,10 @@ static void sort_beyond(const laves__samples *samples, const limit *l, laves__ke
   laves__sort_keyed(order, scratch, count);
 }
 
-/* Chooses the places among the sorted samples; returns how many there are in all. */
-static size_t choose(const laves__samples *samples, const laves_domain *domain, const limit *l, const laves__keyed *order,
-                     size_t count, grid *g, laves_place *places, double *limits, size_t capacity) {
-  for (size_t i = 0; i < count; i++) {
+/* Chooses the places among the sorted samples; returns how many there are in all, or so far when it is cancelled. */
+static size_t choose(laves_context *context, const laves__samples *samples, const laves_domain *domain, const limit *l,
+                     const laves__keyed *order, size_t count, grid *g, laves_place *places, double *limits, size_t capacity) {
+  for (size_t i = 0; i < count && !laves__cancelled_at(context, "distance", i, count); i++) {
     const laves__sample *s = &samples->items[order[i].value];
     const double here = ldexp(l->distance, level_of(l, s));
     if (is_taken(g, s->point, 2 * here)) continue;
@@ -123,7 +123,8 @@ laves_result laves__distant_places(laves_context *context, const laves__samples 
   }
   for (size_t i = 0; i < g.bucket_count; i++) g.heads[i] = NOTHING;
   sort_beyond(samples, &l, order, scratch);
-  *count = choose(samples, domain, &l, order, beyond, &g, places, limits, capacity);
+  *count = choose(context, samples, domain, &l, order, beyond, &g, places, limits, capacity);
+  if (laves__is_cancelled(context)) result = laves__fail_cancelled(error);
 clean_up:
   laves__free(context, order, beyond, sizeof *order);
   laves__free(context, scratch, beyond, sizeof *scratch);

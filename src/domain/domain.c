@@ -85,9 +85,12 @@ laves_result laves_domain_from_file_with(laves_context *context, const char *pat
   size_t length = 0;
   result = laves__input_read(context, path, &bytes, &length, error);
   if (result == LAVES_OK) {
-    laves__sha256_of(bytes, length, made->input_hash);
-    result = ends_with_lua(path) ? build_script(context, path, bytes, length, made, error)
-                                 : build_surface(context, path, bytes, length, options, made, error);
+    if (!laves__sha256_of(context, bytes, length, made->input_hash))
+      result = laves__fail_cancelled(error);
+    else if (ends_with_lua(path))
+      result = build_script(context, path, bytes, length, made, error);
+    else
+      result = build_surface(context, path, bytes, length, options, made, error);
     laves__free(context, bytes, length + 1, 1);
   }
   return finish(result, made, domain);
@@ -97,8 +100,10 @@ laves_result laves_domain_from_expression(laves_context *context, const char *te
   *domain = NULL;
   laves_domain *made = domain_create(context);
   if (!made) return laves__fail_memory(context, error);
-  laves__sha256_of(text, strlen(text), made->input_hash);
-  return finish(laves__implicit_build(context, text, strlen(text), true, "expression", NULL, made, error), made, domain);
+  const laves_result result = laves__sha256_of(context, text, strlen(text), made->input_hash)
+                                  ? laves__implicit_build(context, text, strlen(text), true, "expression", NULL, made, error)
+                                  : laves__fail_cancelled(error);
+  return finish(result, made, domain);
 }
 
 /* Checked copies of the caller's arrays. */

@@ -468,8 +468,8 @@ laves__node laves__expression_lower(laves__expression *e, laves__node root, cons
                         laves__node_make(e, LAVES__OP_Z, 0, 0, 0)},
                        *outer};
   bool ok = !has_failed(e) && add_frame(&w, &first) && push(&w, root, 0);
-  while (ok && w.stack_count) {
-    ok = lower_step(&w);
+  for (size_t step = 0; ok && w.stack_count; step++) {
+    ok = !laves__cancelled_at(e->context, "script", step, SIZE_MAX) && lower_step(&w);
     if (w.memo_count > 4 * (size_t)LAVES__NODE_LIMIT || w.frame_count > LAVES__NODE_LIMIT) { /* even if they fold to few nodes */
       e->too_large = true;
       ok = false;

@@ -197,9 +197,17 @@ static bool holds(laves__box3 box, laves__vec3 p) {
          p.z < box.upper.z;
 }
 
-/* A cell that the surface crosses gives the foot of its centre, if that lies within the cell, so feet come about evenly. */
+/* Asks at the cells of 64 leaves, or at each where one takes long; after a cancel it is true everywhere. */
+static bool is_cancelled(const sampler *s, int depth) {
+  enum { LONG_TAPE = 1000 };
+  laves_context *context = s->solid->model.expression.context;
+  return depth >= 2 || s->solid->tape.count > LONG_TAPE ? laves__cancelled(context, "samples", 0) : laves__is_cancelled(context);
+}
+
+/* After a cancel what is left has no samples; the caller asks whether there was one.
+ * A cell that the surface crosses gives the foot of its centre, if that lies within the cell, so feet come about evenly. */
 static void sample_cell(sampler *s, laves__box3 cell, int depth) {
-  if (s->count == s->capacity) return;
+  if (s->count == s->capacity || is_cancelled(s, depth)) return;
   const laves__vec3 c = box3_centre(cell), half = v3_sub(cell.upper, c);
   if (side(s->solid, c, v3_norm(half), half) != LAVES__UNDECIDED) return;
   if (depth == 0) {
@@ -256,7 +264,10 @@ static laves_result build_tape(implicit *s, const char *name, laves__vec3 origin
 
 static laves_result find_bounds(implicit *s, const char *name, laves__box3 *box, laves_error *error) {
   *box = s->model.shape.box;
-  switch (laves__bounds_find(&s->tape, box)) {
+  laves_context *context = s->model.expression.context;
+  switch (laves__bounds_find(context, &s->tape, box)) {
+    case LAVES__BOUNDS_CANCELLED:
+      return laves__fail_cancelled(error);
     case LAVES__BOUNDS_EMPTY:
       return laves__fail(error, LAVES_ERROR_INPUT, "%s: the solid is empty: nothing is inside", name);
     case LAVES__BOUNDS_ENDLESS:

@@ -19,15 +19,19 @@ enum { ROUND_DEPTH = 4, LAST_DEPTH = 6, ROUND_LIMIT = 200 };
 static const double worthwhile = 0.05;
 /* Instructions that the search may take, about half a second; what is then undecided counts as solid. */
 static const double instruction_limit = 1e8;
+/* Between two reports of progress; those of leaves take long. */
+static const double instructions_per_report = 1e4;
 /* Room for the rounding of the map to t, as a fraction of the box. */
 static const double map_slack = 1e-12;
 
 typedef struct search {
+  laves_context *context;
   const laves__tape *tape;
   bool divided_in_t[3]; /* the axis has infinite sides, or is cut at the horizon */
   bool in_proportion;   /* which of the two maps applies */
   int depth;
-  double instructions;
+  double instructions, asked; /* so far, and when progress was reported last */
+  bool cancelled;
   laves__box3 hull; /* in t where so divided */
 } search;
 
@@ -58,7 +62,15 @@ static laves__box3 to_parameters(const search *s, laves__box3 cell) {
   return mapped(s, cell, s->in_proportion ? proportional_parameter : compact_parameter);
 }
 
+static bool is_cancelled(search *s) {
+  if (s->cancelled || s->instructions - s->asked < instructions_per_report) return s->cancelled;
+  s->asked = s->instructions;
+  s->cancelled = laves__cancelled(s->context, "bounds", 0);
+  return s->cancelled;
+}
+
 static void visit(search *s, laves__box3 cell, int depth) {
+  if (is_cancelled(s)) return;
   const laves__vec3 l = cell.lower, u = cell.upper, hl = s->hull.lower, hu = s->hull.upper;
   if (l.x >= hl.x && l.y >= hl.y && l.z >= hl.z && u.x <= hu.x && u.y <= hu.y && u.z <= hu.z) return; /* adds nothing */
   if (s->instructions > instruction_limit) depth = s->depth;
@@ -124,24 +136,29 @@ static bool shrink_from_horizon(search *s, laves__box3 *box) {
   return some;
 }
 
-laves__bounds_result laves__bounds_find(const laves__tape *tape, laves__box3 *box) {
-  search s = {.tape = tape, .depth = ROUND_DEPTH};
-  const bool was_endless = mark_endless(&s, *box);
-  if (!shrink_on(&s, box)) return LAVES__BOUNDS_EMPTY;
-  if (mark_endless(&s, *box)) {
-    if (!shrink_from_horizon(&s, box)) return LAVES__BOUNDS_EMPTY;
+static laves__bounds_result find(search *s, laves__box3 *box) {
+  const bool was_endless = mark_endless(s, *box);
+  if (!shrink_on(s, box)) return LAVES__BOUNDS_EMPTY;
+  if (mark_endless(s, *box)) {
+    if (!shrink_from_horizon(s, box)) return LAVES__BOUNDS_EMPTY;
     if (!laves__box3_is_finite(*box)) return LAVES__BOUNDS_ENDLESS;
-    if (!shrink_on(&s, box)) return LAVES__BOUNDS_EMPTY;
+    if (!shrink_on(s, box)) return LAVES__BOUNDS_EMPTY;
   }
-  if (s.instructions < instruction_limit / 2) {
+  if (s->instructions < instruction_limit / 2) {
     bool gain;
-    mark_endless(&s, *box);
-    s.depth = LAST_DEPTH;
-    if (!shrink(&s, box, &gain)) return LAVES__BOUNDS_EMPTY;
+    mark_endless(s, *box);
+    s->depth = LAST_DEPTH;
+    if (!shrink(s, box, &gain)) return LAVES__BOUNDS_EMPTY;
   }
   if (was_endless) {
     const laves__vec3 room = v3_scale(v3_sub(box->upper, box->lower), map_slack);
     *box = (laves__box3){v3_sub(box->lower, room), v3_add(box->upper, room)};
   }
   return LAVES__BOUNDS_FOUND;
+}
+
+laves__bounds_result laves__bounds_find(laves_context *context, const laves__tape *tape, laves__box3 *box) {
+  search s = {.context = context, .tape = tape, .depth = ROUND_DEPTH};
+  const laves__bounds_result result = find(&s, box);
+  return s.cancelled ? LAVES__BOUNDS_CANCELLED : result;
 }

@@ -4,9 +4,14 @@
 
 #include "domain/tape.h"
 
-typedef enum laves__bounds_result { LAVES__BOUNDS_FOUND, LAVES__BOUNDS_EMPTY, LAVES__BOUNDS_ENDLESS } laves__bounds_result;
+typedef enum laves__bounds_result {
+  LAVES__BOUNDS_FOUND,
+  LAVES__BOUNDS_EMPTY,
+  LAVES__BOUNDS_ENDLESS,
+  LAVES__BOUNDS_CANCELLED
+} laves__bounds_result;
 
 /* @param box  in: known to contain the solid, sides may be infinite; out: finite and close around it, when found */
-laves__bounds_result laves__bounds_find(const laves__tape *tape, laves__box3 *box);
+laves__bounds_result laves__bounds_find(laves_context *context, const laves__tape *tape, laves__box3 *box);
 
 #endif

@@ -176,7 +176,11 @@ laves_result laves__kept_list(laves__expression *e, uint32_t kept, laves_feature
   if (result == LAVES_OK && !laves__grow(e->context, &stack, &capacity, 1, sizeof *stack))
     result = laves__fail_memory(e->context, error);
   if (result == LAVES_OK) stack[count++] = (visit){kept, laves__affine_identity()};
-  while (count > 0 && result == LAVES_OK) {
+  for (size_t step = 0; count > 0 && result == LAVES_OK; step++) {
+    if (laves__cancelled_at(e->context, "script", step, SIZE_MAX)) {
+      result = laves__fail_cancelled(error);
+      break;
+    }
     const visit v = stack[--count];
     const kept_node *node = &e->keeps->node[v.kept - 1];
     if (!laves__grow(e->context, &stack, &capacity, count + 2, sizeof *stack)) {

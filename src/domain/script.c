@@ -2,9 +2,11 @@
  *
  * The chunk sees a table of its own: the vocabulary, and of Lua what computes without reaching outside or hiding an error
  * (no pcall, so that no limit can be swallowed; no load, require, io, os, debug, coroutines, metatables; of strings
- * no patterns and no rep, whose cost a step counter does not see). Text only, no byte code. Memory is counted
- * by the allocator, steps by a hook, and a clock catches what is slow in few steps. pairs() goes in sorted order and
- * math.random() starts from a fixed seed, so a script means the same solid on every run. */
+ * no patterns and no rep, whose cost no limit would see). Text only, no byte code. Memory is counted by the allocator,
+ * steps by a hook, and a clock catches what is slow in few steps: it is read at every call and every hundred steps. What is left
+ * is how long one step or call can take, so texts have a length limit of their own, sorting calls a function for each comparison,
+ * and lists have no more items than fit into memory. pairs() goes in sorted order and math.random() starts from a fixed seed, so
+ * a script means the same solid on every run. */
 #include "domain/script.h"
 
 #include "domain/kept.h"
@@ -17,13 +19,20 @@
 
 /* Lua's own memory; the solid is counted apart, by LAVES__NODE_LIMIT. */
 static const size_t lua_byte_limit = (size_t)64 << 20;
+/* Of one text: comparing or joining two of them is one step. */
+static const size_t text_byte_limit = (size_t)1 << 20;
+/* Of a list that a function goes through. More do not fit into memory, but a list with holes may claim any length. */
+static const lua_Integer item_limit = 1 << 22;
 /* Virtual machine instructions: about 0.2 seconds of plain arithmetic. */
 static const size_t step_limit = 20000000;
 /* Few steps can be slow (inserting at the front of a huge table); far above what honest scripts take. */
 static const double second_limit = 10;
-/* Steps between two looks at the clock, and between two reports of progress. */
-enum { STEPS_PER_LOOK = 1000 };
-static const size_t steps_per_report = 100000;
+/* Steps between two looks at the clock. */
+enum { STEPS_PER_LOOK = 100 };
+/* Turns of a loop within a function between two of them: a power of two. */
+enum { TURNS_PER_LOOK = 256 };
+/* Between two reports of progress. */
+static const double seconds_per_report = 0.02;
 
 laves__script *laves__script_of(lua_State *L) { return *(laves__script **)lua_getextraspace(L); }
 
@@ -39,13 +48,16 @@ static int current_line(lua_State *L) {
 
 static void *allocate(void *user, void *block, size_t old_bytes, size_t new_bytes) {
   laves__script *script = user;
-  if (!block) old_bytes = 0; /* Lua passes a kind of object there */
+  const bool is_text = !block && old_bytes == LUA_TSTRING; /* Lua passes the kind of a new object there */
+  if (!block) old_bytes = 0;
   if (new_bytes == 0) {
     laves__free(script->context, block, old_bytes, 1);
     script->lua_bytes -= old_bytes;
     return NULL;
   }
-  if (new_bytes > old_bytes && script->lua_bytes - old_bytes + new_bytes > lua_byte_limit) {
+  if (is_text && new_bytes > text_byte_limit) {
+    script->over_text = true;
+  } else if (new_bytes > old_bytes && script->lua_bytes - old_bytes + new_bytes > lua_byte_limit) {
     script->over_limit = true;
   } else {
     void *result = laves__realloc(script->context, block, old_bytes, new_bytes, 1);
@@ -59,22 +71,32 @@ static void *allocate(void *user, void *block, size_t old_bytes, size_t new_byte
   return NULL;
 }
 
-static void stop(lua_State *L, lua_Debug *record, const char *what) {
-  lua_getinfo(L, "l", record);
-  lua_pushfstring(L, "%s:%d: %s", laves__script_of(L)->name, record->currentline, what);
+/* Raises the end of the script. */
+static void stop(lua_State *L, const char *what) {
+  lua_pushfstring(L, "%s:%d: %s", laves__script_of(L)->name, current_line(L), what);
   lua_error(L);
 }
 
+static void look_at_clock(lua_State *L) {
+  laves__script *script = laves__script_of(L);
+  const double now = laves__wall_seconds();
+  if (now - script->started > second_limit) stop(L, "the script runs for more than 10 seconds; is there an endless loop?");
+  if (now - script->asked < seconds_per_report) return;
+  script->asked = now;
+  script->cancelled = laves__cancelled(script->context, "script", 0);
+  if (script->cancelled) stop(L, "cancelled");
+}
+
+void laves__script_ask(lua_State *L, size_t index) {
+  if (index % TURNS_PER_LOOK == 0) look_at_clock(L);
+}
+
+/* The hook: after some steps, and at each call of a function. */
 static void look(lua_State *L, lua_Debug *record) {
   laves__script *script = laves__script_of(L);
-  script->steps += STEPS_PER_LOOK;
-  if (script->steps > step_limit) stop(L, record, "the script takes more than 20 million steps; is there an endless loop?");
-  if (laves__wall_seconds() - script->started > second_limit)
-    stop(L, record, "the script runs for more than 10 seconds; is there an endless loop?");
-  if (script->steps % steps_per_report == 0 && laves__cancelled(script->context, "script", 0)) {
-    script->cancelled = true;
-    stop(L, record, "cancelled");
-  }
+  if (record->event == LUA_HOOKCOUNT) script->steps += STEPS_PER_LOOK;
+  if (script->steps > step_limit) stop(L, "the script takes more than 20 million steps; is there an endless loop?");
+  look_at_clock(L);
 }
 
 /* ---- what of Lua the script sees ---- */
@@ -124,6 +146,52 @@ static int sorted_pairs(lua_State *L) {
   return 1;
 }
 
+/* Lua function for table.sort, whose every call is a look at the clock. */
+static int is_less(lua_State *L) {
+  lua_pushboolean(L, lua_compare(L, 1, 2, LUA_OPLT));
+  return 1;
+}
+
+/* table.sort with a function in any case. Upvalue: Lua's own. */
+static int sort(lua_State *L) {
+  luaL_checktype(L, 1, LUA_TTABLE);
+  lua_settop(L, 2);
+  if (lua_isnil(L, 2)) {
+    lua_pushcfunction(L, is_less);
+    lua_replace(L, 2);
+  }
+  lua_pushvalue(L, lua_upvalueindex(1));
+  lua_insert(L, 1);
+  lua_call(L, 2, 0);
+  return 0;
+}
+
+/* table.insert and table.remove, which move as many items as the list claims to have. Upvalues: Lua's own function, its name. */
+static int of_list(lua_State *L) {
+  luaL_checktype(L, 1, LUA_TTABLE);
+  if (luaL_len(L, 1) > item_limit)
+    return luaL_error(L, "table.%s: the table must be a list of at most %d items without holes",
+                      lua_tostring(L, lua_upvalueindex(2)), (int)item_limit);
+  lua_pushvalue(L, lua_upvalueindex(1));
+  lua_insert(L, 1);
+  lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
+  return lua_gettop(L);
+}
+
+/* Puts bounds on what the table library on top of the stack does in one call. */
+static void bound_lists(lua_State *L) {
+  static const char *const functions[] = {"insert", "remove", NULL};
+  lua_getfield(L, -1, "sort");
+  lua_pushcclosure(L, sort, 1);
+  lua_setfield(L, -2, "sort");
+  for (const char *const *name = functions; *name; name++) {
+    lua_getfield(L, -1, *name);
+    lua_pushstring(L, *name);
+    lua_pushcclosure(L, of_list, 2);
+    lua_setfield(L, -2, *name);
+  }
+}
+
 static void copy_fields(lua_State *L, int from, int to, const char *const *names) {
   for (; *names; names++) {
     lua_getfield(L, from, *names);
@@ -153,6 +221,7 @@ static void push_globals(lua_State *L) {
   lua_getfield(L, -1, "sort");
   lua_pushcclosure(L, sorted_pairs, 1);
   lua_setfield(L, globals, "pairs");
+  bound_lists(L);
   lua_setfield(L, globals, "table");
 
   push_library(L, LUA_STRLIBNAME, luaopen_string, string);
@@ -183,22 +252,32 @@ typedef struct job {
   bool is_size; /* the chunk leaves a size of elements, not a solid */
 } job;
 
+/* Gives out a text line by line, so that it is known how far Lua has read. */
 typedef struct text_reader {
-  const char *part[2];
-  size_t length[2];
-  int next;
+  const char *before; /* the text, or NULL */
+  const char *text;
+  size_t length;
 } text_reader;
 
 static const char *read_part(lua_State *L, void *user, size_t *length) {
-  (void)L;
   text_reader *reader = user;
-  while (reader->next < 2 && reader->length[reader->next] == 0) reader->next++;
-  if (reader->next == 2) {
+  const char *part = reader->before;
+  if (part) {
+    reader->before = NULL;
+    *length = strlen(part);
+    return part;
+  }
+  if (reader->length == 0) {
     *length = 0;
     return NULL;
   }
-  *length = reader->length[reader->next];
-  return reader->part[reader->next++];
+  part = reader->text;
+  const char *end = memchr(part, '\n', reader->length);
+  *length = end ? (size_t)(end - part) + 1 : reader->length;
+  reader->text += *length;
+  reader->length -= *length;
+  laves__script_of(L)->line++;
+  return part;
 }
 
 /* What the chunk returned goes into the model. */
@@ -228,12 +307,13 @@ static int run(lua_State *L) {
   laves__script *script = laves__script_of(L);
   push_globals(L);
   if (work->is_size) laves__script_add_depth(L, 0);
-  text_reader reader = {{"return ", work->text}, {work->is_expression ? 7 : 0, work->length}, 0};
+  text_reader reader = {work->is_expression ? "return " : NULL, work->text, work->length};
   lua_pushfstring(L, "=%s", script->name);
   if (lua_load(L, read_part, &reader, lua_tostring(L, -1), "t") != LUA_OK) return lua_error(L);
+  script->line = 0;
   lua_pushvalue(L, 2);
   lua_setupvalue(L, -2, 1);
-  lua_sethook(L, look, LUA_MASKCOUNT, STEPS_PER_LOOK);
+  lua_sethook(L, look, LUA_MASKCALL | LUA_MASKCOUNT, STEPS_PER_LOOK);
   lua_call(L, 0, 1);
   lua_sethook(L, NULL, 0, 0);
   if (work->is_size)
@@ -243,32 +323,53 @@ static int run(lua_State *L) {
   return 0;
 }
 
+/* Whether a message begins with where it arose, as "name:12: ". */
+static bool tells_where(const laves__script *script, const char *text) {
+  const size_t length = strlen(script->name);
+  return strncmp(text, script->name, length) == 0 && text[length] == ':';
+}
+
+/* Message handler: an error that does not tell where it arose is on the line that the script had come to. */
+static int note_line(lua_State *L) {
+  laves__script *script = laves__script_of(L);
+  const int line = current_line(L);
+  if (line > 0) script->line = line;
+  return 1;
+}
+
+static laves_result fail_at(const laves__script *script, laves_error *error, const char *text) {
+  if (script->line > 0) return laves__fail(error, LAVES_ERROR_INPUT, "%s:%d: %s", script->name, script->line, text);
+  return laves__fail(error, LAVES_ERROR_INPUT, "%s: %s", script->name, text);
+}
+
 static laves_result explain(laves__script *script, lua_State *L, int status, laves_error *error) {
   if (script->cancelled) return laves__fail_cancelled(error);
   if (script->over_memory || script->model->expression.out_of_memory) return laves__fail_memory(script->context, error);
+  if (script->over_text) return fail_at(script, error, "the script makes a text of more than 1 MiB; does it grow without end?");
   if (status == LUA_ERRMEM || script->over_limit)
-    return laves__fail(
-        error, LAVES_ERROR_INPUT,
-        "%s:%d: the script needs more than %d MiB of memory; does it recurse, or grow a table or text, without end?",
-        script->name, script->line, (int)(lua_byte_limit >> 20));
+    return fail_at(script, error,
+                   "the script needs more than 64 MiB of memory; does it recurse, or grow a table or text, without end?");
   const char *text = lua_tostring(L, -1);
   if (!text) text = "the script raised an error that is not a text";
-  if (strcmp(text, "C stack overflow") == 0) text = "brackets or calls are nested too deeply";
-  if (strncmp(text, script->name, strlen(script->name)) == 0) return laves__fail(error, LAVES_ERROR_INPUT, "%s", text);
-  return laves__fail(error, LAVES_ERROR_INPUT, "%s: %s", script->name, text);
+  if (status == LUA_ERRERR || strstr(text, "C stack overflow"))
+    return fail_at(script, error, "brackets or calls are nested too deeply");
+  if (tells_where(script, text)) return laves__fail(error, LAVES_ERROR_INPUT, "%s", text);
+  return fail_at(script, error, text);
 }
 
 /* The model is set up, and holds the leaf of d where there is one. */
 static laves_result run_job(laves_context *context, job *work, const char *name, const char *folder, laves__model *model,
                             laves_error *error) {
   laves__script script = {.context = context, .model = model, .name = name, .folder = folder, .started = laves__wall_seconds()};
+  script.asked = script.started;
   lua_State *L = lua_newstate(allocate, &script);
   if (!L) return laves__fail_memory(context, error);
   script.lua = L;
   *(laves__script **)lua_getextraspace(L) = &script;
+  lua_pushcfunction(L, note_line);
   lua_pushcfunction(L, run);
   lua_pushlightuserdata(L, work);
-  const int status = lua_pcall(L, 1, 0, 0);
+  const int status = lua_pcall(L, 1, 0, -3);
   const laves_result result = status == LUA_OK ? LAVES_OK : explain(&script, L, status, error);
   script.lua = NULL;
   lua_close(L);

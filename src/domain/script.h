@@ -45,14 +45,20 @@ typedef struct laves__script {
   const char *name, *folder;
   size_t lua_bytes;
   size_t steps;
-  double started;   /* laves__wall_seconds(), moved on by the time that files take */
-  bool over_limit;  /* Lua's memory passed its cap */
-  bool over_memory; /* the context refused memory */
+  double started;    /* laves__wall_seconds(), moved on by the time that files take */
+  double asked;      /* when progress was reported last */
+  size_t file_bytes; /* of the surface files read so far */
+  bool over_limit;   /* Lua's memory passed its cap */
+  bool over_text;    /* a text passed its own */
+  bool over_memory;  /* the context refused memory */
   bool cancelled;
-  int line; /* where memory ran short; 0: unknown */
+  int line; /* where memory ran short, or an error was raised; 0: unknown */
 } laves__script;
 
 laves__script *laves__script_of(struct lua_State *L);
+/* Raises an error when the script's time is over or a cancel is asked for. To be called in loops whose length the script chooses,
+ * as the limits are looked at between calls and steps of the script otherwise; turn `index` of such a loop. */
+void laves__script_ask(struct lua_State *L, size_t index);
 
 /* A value of the vocabulary: a solid, or a field of numbers over space. */
 typedef enum laves__value_kind { LAVES__FIELD, LAVES__SOLID } laves__value_kind;

@@ -134,7 +134,10 @@ static int call(lua_State *L) {
   laves__node node[3] = {0, 0, 0};
   if (any_number_of) {
     node[0] = laves__script_field(L, 1, f->name);
-    for (int i = 2; i <= given; i++) node[0] = laves__node_make(store(L), f->op, node[0], laves__script_field(L, i, f->name), 0);
+    for (int i = 2; i <= given; i++) {
+      laves__script_ask(L, (size_t)i);
+      node[0] = laves__node_make(store(L), f->op, node[0], laves__script_field(L, i, f->name), 0);
+    }
     return finish(L, node[0], field);
   }
   for (int i = 0; i < operands; i++)

@@ -36,8 +36,10 @@ static laves__vec3 point_of(lua_State *L, lua_Integer index) {
 
 static void take_points(lua_State *L) {
   const lua_Integer count = list_length(L, "points must be a list, as in points={{0, 0, 1}}");
-  for (lua_Integer i = 1; i <= count; i++)
+  for (lua_Integer i = 1; i <= count; i++) {
+    laves__script_ask(L, (size_t)i);
     if (!laves__kept_add_point(store(L), point_of(L, i))) fail_kept(L);
+  }
 }
 
 static void take_lines(lua_State *L) {
@@ -46,8 +48,10 @@ static void take_lines(lua_State *L) {
     lua_geti(L, -1, i);
     const lua_Integer vertices = list_length(L, "each line must be a list of points, as in {{0, 0, 1}, {1, 0, 1}}");
     if (vertices < 2) luaL_error(L, "keep: a line must have two points or more");
-    for (lua_Integer k = 1; k <= vertices; k++)
+    for (lua_Integer k = 1; k <= vertices; k++) {
+      laves__script_ask(L, (size_t)(i + k));
       if (!laves__kept_add_vertex(store(L), point_of(L, k))) fail_kept(L);
+    }
     if (!laves__kept_end_line(store(L))) fail_kept(L);
     lua_pop(L, 1);
   }

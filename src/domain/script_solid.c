@@ -10,8 +10,9 @@
 #include "domain/surface_input.h"
 #include "io/file.h"
 
-/* Surface files that one script may read. */
+/* Surface files that one script may read, and their bytes in all. */
 enum { LEAF_LIMIT = 1000 };
+static const size_t file_byte_limit = (size_t)2 << 30;
 
 static const double degree = 3.14159265358979323846 / 180;
 
@@ -60,6 +61,7 @@ static int combine(lua_State *L) {
   if (count < 1) return luaL_error(L, "%s: expected solids", c->name);
   laves__shape result = laves__script_solid(L, 1, c->name);
   for (int i = 2; i <= count; i++) {
+    laves__script_ask(L, (size_t)i);
     const laves__shape next = laves__script_solid(L, i, c->name);
     result = laves__shape_blend(store(L), c->kind, &result, &next, width);
   }
@@ -168,6 +170,7 @@ static int repeat_linear(lua_State *L) {
   laves__script_arguments(L, "repeat_linear", 2, p, 2, v);
   laves__shape all = a;
   for (int i = 1; i < (int)v[3] && all.node != LAVES__NO_NODE; i++) {
+    laves__script_ask(L, (size_t)i);
     const laves__shape copy = laves__shape_move(store(L), &a, v3_scale(v3(v[0], v[1], v[2]), i));
     all = laves__shape_boolean(store(L), LAVES__UNION, &all, &copy);
   }
@@ -185,6 +188,7 @@ static int repeat_grid(lua_State *L) {
   for (int axis = 0; axis < 3; axis++) {
     const laves__shape row = all;
     for (int i = 1; i < (int)v[3 + axis] && all.node != LAVES__NO_NODE; i++) {
+      laves__script_ask(L, (size_t)i);
       laves__vec3 by = v3(0, 0, 0);
       *v3_slot(&by, axis) = v[axis] * i;
       const laves__shape copy = laves__shape_move(store(L), &row, by);
@@ -202,6 +206,7 @@ static int repeat_polar(lua_State *L) {
   const laves__vec3 axis = direction(L, "repeat_polar", "axis", v + 1);
   laves__shape all = a;
   for (int i = 1; i < (int)v[0] && all.node != LAVES__NO_NODE; i++) {
+    laves__script_ask(L, (size_t)i);
     const laves__shape copy = laves__shape_rotate(store(L), &a, axis, v[4] * degree * i / v[0]);
     all = laves__shape_boolean(store(L), LAVES__UNION, &all, &copy);
   }
@@ -276,13 +281,18 @@ static const char *push_path(lua_State *L, const char *path) {
   return lua_pushfstring(L, "%s/%s", folder, path);
 }
 
-static laves_result read_surface(laves_context *context, const char *path, laves_domain *domain, laves_error *error) {
+static laves_result read_surface(laves__script *script, const char *path, laves_domain *domain, laves_error *error) {
+  laves_context *context = script->context;
   char *bytes = NULL;
   size_t length = 0;
   laves_result result = laves__file_read(context, path, &bytes, &length, error);
   if (result != LAVES_OK) return result;
   laves__surface_input input = {0};
-  result = laves__surface_parse(context, bytes, length, path, &input, error);
+  script->file_bytes += length;
+  if (script->file_bytes <= file_byte_limit)
+    result = laves__surface_parse(context, bytes, length, path, &input, error);
+  else
+    result = laves__fail(error, LAVES_ERROR_INPUT, "%s: the files of the script have more than 2 GiB together", path);
   laves__free(context, bytes, length + 1, 1);
   return result == LAVES_OK ? laves__surface_build(context, &input, NULL, domain, error) : result;
 }
@@ -318,14 +328,30 @@ static bool name_parts(laves_context *context, laves__model *model, const laves_
   return true;
 }
 
+/* Leaves on the stack what surface() yielded for this file before, or nil. A file is read once, however often it is named. */
+static bool push_known_surface(lua_State *L, const char *path) {
+  luaL_getsubtable(L, LUA_REGISTRYINDEX, "surfaces");
+  lua_getfield(L, -1, path);
+  return !lua_isnil(L, -1);
+}
+
+/* The value on top of the stack is what surface() yields for this file. */
+static void remember_surface(lua_State *L, const char *path) {
+  luaL_getsubtable(L, LUA_REGISTRYINDEX, "surfaces");
+  lua_pushvalue(L, -2);
+  lua_setfield(L, -2, path);
+  lua_pop(L, 1);
+}
+
 /* surface("part.stl"). The model owns the domain from the start, so an error raised later loses nothing. */
 static int surface(lua_State *L) {
   laves__script *script = laves__script_of(L);
   laves__model *model = script->model;
   if (lua_type(L, 1) != LUA_TSTRING)
     return luaL_error(L, "surface: expected the name of a file, not %s", laves__script_type(L, 1));
-  if (model->leaf_count == LEAF_LIMIT) return luaL_error(L, "surface: at most %d files", (int)LEAF_LIMIT);
   const char *path = push_path(L, lua_tostring(L, 1));
+  if (push_known_surface(L, path)) return 1;
+  if (model->leaf_count == LEAF_LIMIT) return luaL_error(L, "surface: at most %d files", (int)LEAF_LIMIT);
   const double started = laves__wall_seconds();
   laves_domain *domain = NULL;
   if (laves__grow(script->context, &model->leaves, &model->leaf_capacity, model->leaf_count + 1, sizeof *model->leaves))
@@ -334,7 +360,7 @@ static int surface(lua_State *L) {
   domain->context = script->context;
   model->leaves[model->leaf_count++] = domain;
   laves_error error;
-  const laves_result result = read_surface(script->context, path, domain, &error);
+  const laves_result result = read_surface(script, path, domain, &error);
   script->started += laves__wall_seconds() - started;
   script->over_memory |= result == LAVES_ERROR_MEMORY;
   script->cancelled |= result == LAVES_ERROR_CANCELLED;
@@ -347,7 +373,9 @@ static int surface(lua_State *L) {
   s.exact = o->is_distance;
   s.volume = o->volume;
   s.area = o->area;
-  return push(L, s);
+  push(L, s);
+  remember_surface(L, path);
+  return 1;
 }
 
 static const luaL_Reg solid_functions[] = {

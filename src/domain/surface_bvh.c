@@ -234,9 +234,9 @@ laves__triangle laves__triangle_of(laves__vec3 a, laves__vec3 b, laves__vec3 c) 
 }
 
 /* The power of two that brings the farthest coordinate into [0.5, 1]. */
-static double tree_scale(const laves__vec3 *points, const uint32_t (*faces)[3], size_t count) {
+static double tree_scale(laves_context *context, const laves__vec3 *points, const uint32_t (*faces)[3], size_t count) {
   double farthest = 0;
-  for (size_t f = 0; f < count; f++)
+  for (size_t f = 0; f < count && !laves__cancelled_at(context, "surface", f, count); f++)
     for (int i = 0; i < 3; i++) {
       const laves__vec3 p = points[faces[f][i]];
       farthest = fmax(farthest, fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))));
@@ -249,7 +249,7 @@ static double tree_scale(const laves__vec3 *points, const uint32_t (*faces)[3], 
 bool laves__bvh_build(laves_context *context, const laves__vec3 *points, const uint32_t (*faces)[3], size_t face_count,
                       uint32_t *order, laves__bvh *bvh) {
   bool done = false;
-  *bvh = (laves__bvh){.scale = tree_scale(points, faces, face_count)};
+  *bvh = (laves__bvh){.scale = tree_scale(context, points, faces, face_count)};
   item *items = laves__alloc(context, face_count, sizeof *items);
   laves__triangle *triangles = laves__alloc(context, face_count, sizeof *triangles);
   if (!items || !triangles) goto clean_up;

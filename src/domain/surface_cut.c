@@ -26,6 +26,8 @@ static const double near_corner = 0.1;
 
 /* A polygon of a face has at most so many corners, a face so many polygons; what would be more stays uncut. */
 enum { CORNERS_MAX = 32, POLYGONS_MAX = 4096, HALVINGS_MAX = 3 };
+/* Polygons looked at between two reports of progress: some milliseconds. */
+enum { WORK_PER_REPORT = 1 << 16 };
 
 typedef struct polygon {
   laves__vec3 corner[CORNERS_MAX];
@@ -48,6 +50,7 @@ typedef struct cutter {
   piece *pieces; /* of all faces, face by face */
   size_t piece_count, piece_capacity;
   size_t judged; /* of these: the first so many */
+  size_t work;   /* polygons looked at since progress was reported */
   bool ask_around;
   double eps, least_radius;
 } cutter;
@@ -101,8 +104,16 @@ static bool part(const polygon *p, laves__vec3 at, laves__vec3 left, double eps,
   return true;
 }
 
-/* Cuts every polygon that the segment passes through. False when memory is short. */
+static bool is_cancelled(cutter *c) {
+  c->work += c->polygon_count;
+  if (c->work < WORK_PER_REPORT) return false;
+  c->work = 0;
+  return laves__cancelled(c->s->context, "surface", 0.7);
+}
+
+/* Cuts every polygon that the segment passes through. False when memory is short or it is cancelled. */
 static bool cut_along(cutter *c, laves__vec3 n, const laves__vec3 ends[2]) {
+  if (is_cancelled(c)) return false;
   const laves__vec3 left = v3_unit(v3_cross(n, v3_sub(ends[1], ends[0])));
   if (!(v3_norm2(left) > 0)) return true;
   const size_t count = c->polygon_count;

@@ -115,9 +115,12 @@ static void mark_crossed(nesting *n) {
   }
 }
 
-static void direct(nesting *n, laves_domain_info *info, bool *turned) {
+/* False when cancelled. */
+static bool direct(nesting *n, laves_domain_info *info, bool *turned) {
   mark_crossed(n);
-  for (size_t part = 0; part < laves__parts_count(n->parts); part++) {
+  const size_t count = laves__parts_count(n->parts);
+  for (size_t part = 0; part < count; part++) {
+    if (laves__cancelled(n->s->context, "surface", (double)part / (double)count)) return false; /* parts may be large */
     const uint32_t number = laves__parts_number(n->parts, part), depth = depth_of(n, part);
     const bool inwards = laves__parts_volume(n->parts, part) < 0;
     const bool wanted = should_face_inwards(info->overlap, depth, inwards);
@@ -128,6 +131,7 @@ static void direct(nesting *n, laves_domain_info *info, bool *turned) {
     turn_part(n, number);
     *turned = true;
   }
+  return true;
 }
 
 bool laves__surface_direct_parts(laves__surface *s, const laves__crossings *c, laves_domain_info *info, bool *turned) {
@@ -138,9 +142,8 @@ bool laves__surface_direct_parts(laves__surface *s, const laves__crossings *c, l
   n.crossed = laves__alloc_zeroed(s->context, s->part_count, sizeof *n.crossed);
   n.votes = laves__alloc_zeroed(s->context, s->part_count, sizeof *n.votes);
   n.asked = laves__alloc(s->context, s->part_count, sizeof *n.asked);
-  const bool done =
-      laves__part_faces_list(s, &n.faces) && n.parts && n.crossed && n.votes && n.asked && find_crossing_parts(s, c, &n.crossing);
-  if (done) direct(&n, info, turned);
+  const bool done = laves__part_faces_list(s, &n.faces) && n.parts && n.crossed && n.votes && n.asked &&
+                    find_crossing_parts(s, c, &n.crossing) && direct(&n, info, turned);
   laves__parts_free(n.parts);
   laves__part_faces_free(s->context, &n.faces);
   laves__free(s->context, n.crossed, s->part_count, sizeof *n.crossed);

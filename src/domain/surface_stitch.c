@@ -16,6 +16,8 @@
 static const double tolerance = 1e-5;
 
 enum { ROUNDS_MAX = 6 };
+/* Edges and points looked at between two reports of progress: some milliseconds. */
+enum { WORK_PER_REPORT = 1 << 14 };
 
 /* A point on an open edge, which starts at half-edge `half`. */
 typedef struct junction {
@@ -34,6 +36,7 @@ typedef struct stitcher {
   uint32_t current; /* the point in question */
   junction *found;
   size_t found_count, found_capacity;
+  size_t work; /* edges and points looked at since progress was reported */
   bool short_of_memory;
 } stitcher;
 
@@ -68,6 +71,7 @@ static bool build_tree(stitcher *t) {
 static void judge_edge(void *user, uint32_t slot) {
   stitcher *t = user;
   const laves__surface *s = t->s;
+  t->work++;
   const uint32_t half = t->open[t->order[slot]], a = start_of(s, half), b = end_of(s, half);
   if (t->current == a || t->current == b || t->short_of_memory) return;
   const laves__vec3 p = s->points[t->current], u = s->points[a], uv = v3_sub(s->points[b], u);
@@ -85,7 +89,13 @@ static int compare_junctions(const void *a, const void *b) {
   return (x->point > y->point) - (x->point < y->point);
 }
 
-/* Every point of an open edge is asked once, from the edge that ends at it. */
+static bool is_cancelled(stitcher *t) {
+  if (++t->work < WORK_PER_REPORT) return false;
+  t->work = 0;
+  return laves__cancelled(t->s->context, "surface", 0.3);
+}
+
+/* Every point of an open edge is asked once, from the edge that ends at it. False when memory is short or it is cancelled. */
 static bool find_junctions(stitcher *t) {
   const laves__surface *s = t->s;
   t->open_count = t->found_count = 0;
@@ -94,6 +104,7 @@ static bool find_junctions(stitcher *t) {
   if (!build_tree(t)) return false;
   const laves__vec3 around = v3(t->reach, t->reach, t->reach);
   for (size_t i = 0; i < 2 * t->open_count; i++) {
+    if (is_cancelled(t)) return false;
     t->current = i % 2 ? end_of(s, t->open[i / 2]) : start_of(s, t->open[i / 2]);
     const laves__vec3 p = s->points[t->current];
     laves__bvh_overlaps(&t->tree, (laves__box3){v3_sub(p, around), v3_add(p, around)}, judge_edge, t);

@@ -17,11 +17,13 @@ enum { SCRATCH = 4 * LAVES__REGISTER_LIMIT, BATCH = 256, FEW = 256 };
 
 typedef struct compiler {
   const laves__expression *e;
-  uint32_t *uses;  /* [nodes] readers left, 0: not reachable */
-  uint16_t *need;  /* [nodes] registers that evaluating it alone takes */
-  uint16_t *reg;   /* [nodes] where its value is, or LAVES__OPERAND_CONSTANT: not yet computed */
-  uint32_t *stack; /* [nodes + 1] */
-  uint32_t *made;  /* [nodes] instructions up to the one that computes it; undefined before */
+  uint32_t *uses;     /* [nodes] readers left, 0: not reachable */
+  uint16_t *need;     /* [nodes] registers that evaluating it alone takes */
+  uint16_t *reg;      /* [nodes] where its value is, or LAVES__OPERAND_CONSTANT: not yet computed */
+  uint32_t *stack;    /* [nodes + 1] */
+  uint32_t *made;     /* [nodes] instructions up to the one that computes it; undefined before */
+  laves__node *plain; /* [nodes] what is named: names stand beside the instructions */
+  int32_t *tag;       /* [nodes] the innermost of the names of a surface; LAVES__NO_TAG but for names */
   uint16_t free[LAVES__REGISTER_LIMIT];
   size_t free_count;
   laves__tape *tape;
@@ -31,18 +33,17 @@ static bool is_name(const laves__expression *e, laves__node a) {
   return e->nodes[a].op == LAVES__OP_TAG || e->nodes[a].op == LAVES__OP_REGION;
 }
 
-/* Names stand beside the instructions: what is computed is what is named. */
-static laves__node plain(const laves__expression *e, laves__node a) {
-  while (is_name(e, a)) a = e->nodes[a].operand[0];
-  return a;
-}
-
-/* The innermost of the names of a surface. */
-static int32_t tag_of(const laves__expression *e, laves__node a) {
-  int32_t tag = LAVES__NO_TAG;
-  for (; is_name(e, a); a = e->nodes[a].operand[0])
-    if (e->nodes[a].op == LAVES__OP_TAG) tag = (int32_t)e->nodes[a].value;
-  return tag;
+/* Sees through chains of names, which may be as long as the expression: in one pass, as operands have smaller numbers. */
+static void look_through_names(compiler *c, size_t nodes) {
+  for (size_t i = 0; i < nodes; i++) {
+    const laves__node_data *n = &c->e->nodes[i];
+    c->plain[i] = (laves__node)i;
+    c->tag[i] = LAVES__NO_TAG;
+    if (!is_name(c->e, (laves__node)i)) continue;
+    c->plain[i] = c->plain[n->operand[0]];
+    c->tag[i] = c->tag[n->operand[0]];
+    if (c->tag[i] == LAVES__NO_TAG && n->op == LAVES__OP_TAG) c->tag[i] = (int32_t)n->value;
+  }
 }
 
 static bool is_constant(const laves__expression *e, laves__node a) { return e->nodes[a].op == LAVES__OP_CONSTANT; }
@@ -58,14 +59,14 @@ static size_t count_uses(compiler *c, laves__node root) {
     if (!c->uses[i]) continue;
     const laves__node_data *n = &c->e->nodes[i];
     const int operands = laves__op_operands[n->op];
-    for (int k = 0; k < operands; k++) c->uses[plain(c->e, n->operand[k])]++;
+    for (int k = 0; k < operands; k++) c->uses[c->plain[n->operand[k]]]++;
     reachable += operands > 0;
   }
   for (size_t i = 0; i <= root; i++) {
     const laves__node_data *n = &c->e->nodes[i];
     uint16_t need = laves__op_operands[n->op] ? 1 : 0;
     for (int k = 0; k < laves__op_operands[n->op]; k++) {
-      const uint16_t other = c->need[plain(c->e, n->operand[k])];
+      const uint16_t other = c->need[c->plain[n->operand[k]]];
       need = (uint16_t)(other > need ? other : need + (other == need && other < UINT16_MAX));
     }
     c->need[i] = need;
@@ -86,8 +87,8 @@ static bool emit(compiler *c, laves__node a) {
   laves__instruction instruction = {.op = (uint16_t)n->op};
   const int operands = laves__op_operands[n->op];
   for (int k = 0; k < operands; k++) {
-    const laves__node b = plain(c->e, n->operand[k]);
-    if (c->tape->tags) c->tape->tags[3 * c->tape->count + (size_t)k] = tag_of(c->e, n->operand[k]);
+    const laves__node b = c->plain[n->operand[k]];
+    if (c->tape->tags) c->tape->tags[3 * c->tape->count + (size_t)k] = c->tag[n->operand[k]];
     instruction.operand[k] = is_input(c->e, b) ? (uint16_t)(c->e->nodes[b].op - LAVES__OP_X) : c->reg[b];
     if (is_constant(c->e, b)) {
       instruction.operand[k] = LAVES__OPERAND_CONSTANT;
@@ -95,7 +96,7 @@ static bool emit(compiler *c, laves__node a) {
     }
   }
   if (n->op == LAVES__OP_LEAF) instruction.leaf = (uint16_t)n->value;
-  for (int k = 0; k < operands; k++) release(c, plain(c->e, n->operand[k]));
+  for (int k = 0; k < operands; k++) release(c, c->plain[n->operand[k]]);
   if (c->free_count == 0) {
     if (c->tape->register_count == LAVES__REGISTER_LIMIT) return false;
     c->free[c->free_count++] = (uint16_t)c->tape->register_count++;
@@ -119,7 +120,7 @@ static bool schedule(compiler *c, laves__node root) {
     const laves__node_data *n = &c->e->nodes[a];
     laves__node next = LAVES__NO_NODE;
     for (int k = 0; k < laves__op_operands[n->op]; k++) {
-      const laves__node b = plain(c->e, n->operand[k]);
+      const laves__node b = c->plain[n->operand[k]];
       if (!is_computed(c, b) && (next == LAVES__NO_NODE || c->need[b] > c->need[next])) next = b;
     }
     if (next != LAVES__NO_NODE) {
@@ -177,7 +178,7 @@ static bool list_regions(compiler *c, laves__node root) {
   const bool done = count == 0 || tape->regions;
   for (size_t i = 0; done && i < nodes; i++) {
     if (!reached[i] || e->nodes[i].op != LAVES__OP_REGION) continue;
-    const laves__node a = plain(e, (laves__node)i);
+    const laves__node a = c->plain[i];
     laves__tape_region r = {.region = (int32_t)e->nodes[i].value};
     if (is_input(e, a)) {
       r.operand = (uint16_t)(e->nodes[a].op - LAVES__OP_X);
@@ -196,9 +197,8 @@ laves_result laves__tape_build(const laves__expression *e, laves__node root, con
                                laves_error *error) {
   laves_context *context = e->context;
   const size_t nodes = (size_t)root + 1;
-  *tape = (laves__tape){.leaves = leaves, .register_count = 3, .root_tag = tag_of(e, root)};
+  *tape = (laves__tape){.leaves = leaves, .register_count = 3};
   const laves__node named_root = root;
-  root = plain(e, root);
   laves_result result = LAVES_OK;
   size_t reachable = 0;
   compiler *c = laves__alloc_zeroed(context, 1, sizeof *c);
@@ -209,10 +209,15 @@ laves_result laves__tape_build(const laves__expression *e, laves__node root, con
   c->reg = laves__alloc(context, nodes, sizeof *c->reg);
   c->stack = laves__alloc(context, nodes + 1, sizeof *c->stack);
   c->made = laves__alloc(context, nodes, sizeof *c->made);
-  if (!c->uses || !c->need || !c->reg || !c->stack || !c->made) {
+  c->plain = laves__alloc(context, nodes, sizeof *c->plain);
+  c->tag = laves__alloc(context, nodes, sizeof *c->tag);
+  if (!c->uses || !c->need || !c->reg || !c->stack || !c->made || !c->plain || !c->tag) {
     result = laves__fail_memory(context, error);
     goto done;
   }
+  look_through_names(c, nodes);
+  tape->root_tag = c->tag[root];
+  root = c->plain[root];
   for (size_t i = 0; i < nodes; i++) c->reg[i] = LAVES__OPERAND_CONSTANT;
   reachable = count_uses(c, root);
   tape->instructions = laves__alloc(context, reachable ? reachable : 2, sizeof *tape->instructions);
@@ -239,6 +244,8 @@ laves_result laves__tape_build(const laves__expression *e, laves__node root, con
     result = laves__fail_memory(context, error);
   }
 done:
+  laves__free(context, c->plain, nodes, sizeof *c->plain);
+  laves__free(context, c->tag, nodes, sizeof *c->tag);
   laves__free(context, c->made, nodes, sizeof *c->made);
   laves__free(context, c->uses, nodes, sizeof *c->uses);
   laves__free(context, c->need, nodes, sizeof *c->need);

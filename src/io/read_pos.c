@@ -84,6 +84,8 @@ static laves_result take_numbers(reader *r, const char brackets[2], size_t wante
 
 /* ---- views ---- */
 
+enum { ITEMS_PER_QUESTION = 1 << 13 }; /* read between two questions whether to cancel */
+
 static laves_result add_corners(reader *r, size_t corners, const double *coordinates, const double *values, laves_error *error) {
   laves__mesh_input *input = r->input;
   if (input->point_count > INT32_MAX - corners) return laves__mesh_input_fail(input, error, "it has more than 2147483647 points");
@@ -94,7 +96,6 @@ static laves_result add_corners(reader *r, size_t corners, const double *coordin
              laves__mesh_input_add_value(input, values[i]);
   if (enough && corners == 4) enough = laves__mesh_input_add_tet(input, tet, 1);
   if (!enough) return laves__fail_memory(input->context, error);
-  if (input->point_count % 65536 < corners && laves__mesh_input_cancelled(input, r->scan.at)) return laves__fail_cancelled(error);
   return LAVES_OK;
 }
 
@@ -141,7 +142,11 @@ static laves_result read_view(reader *r, laves_error *error) {
   }
   if (!take(&r->scan, '{')) return laves__scan_fail_expected(&r->scan, error, "'{'");
   laves_result result = LAVES_OK;
-  while (result == LAVES_OK && !take(&r->scan, '}')) result = read_item(r, error);
+  for (size_t item = 1; result == LAVES_OK && !take(&r->scan, '}'); item++) {
+    result = read_item(r, error);
+    if (result == LAVES_OK && item % ITEMS_PER_QUESTION == 0 && laves__mesh_input_cancelled(r->input, r->scan.at))
+      result = laves__fail_cancelled(error);
+  }
   if (result == LAVES_OK && !take(&r->scan, ';')) return laves__scan_fail_expected(&r->scan, error, "';' behind the view");
   return result;
 }

@@ -167,6 +167,8 @@ static void write_raw(laves__output *out, const array *a) {
 /* Bytes of a block before compression: large enough that its header and dictionary cost little, small enough to share the
  * work out. A multiple of every item's size. */
 enum { BLOCK_BYTES = 1 << 18 };
+/* From this one on compression takes many times as long. */
+enum { SLOW_LEVEL = 4 };
 
 typedef struct compression {
   laves_context *context;
@@ -216,12 +218,14 @@ static laves_result compress_array(laves_context *context, array *a, int level, 
   a->header[0] = a->block_count;
   a->header[1] = BLOCK_BYTES;
   a->header[2] = bytes % BLOCK_BYTES;
-  const size_t wave = (size_t)laves__workers(context) * 16; /* between two questions whether to cancel; about 50 ms */
+  /* A block takes some milliseconds, or a tenth of a second at high levels; a wave is what is between two questions. */
+  const bool slow = level >= SLOW_LEVEL;
+  const size_t wave = (size_t)laves__workers(context) * (slow ? 1 : 16), range = slow ? 1 : 4;
   for (size_t i = 0; i < a->block_count; i += wave) {
     const size_t count = a->block_count - i < wave ? a->block_count - i : wave;
     compression c = {context, a, i, level};
     const double done = progress + progress_step * (double)i / (double)a->block_count;
-    if (laves__cancelled(context, "write", done) || !laves__parallel_for(context, NULL, count, 4, compress_range, &c))
+    if (laves__cancelled(context, "write", done) || !laves__parallel_for(context, NULL, count, range, compress_range, &c))
       return laves__fail_cancelled(error);
   }
   for (size_t i = 0; i < a->block_count; i++)

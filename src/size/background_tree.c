@@ -16,7 +16,7 @@
  * whole along three axes; at most 32 levels of halves follow. */
 enum { LEAF_ITEMS = 4, MIDDLE_LEVELS = 40, STACK_SIZE = MIDDLE_LEVELS + 34 };
 
-enum { ITEMS_PER_QUESTION = 1 << 20 }; /* looked at between two questions whether to cancel */
+enum { ITEMS_PER_QUESTION = 1 << 17 }; /* looked at between two questions whether to cancel */
 
 /* ---- building ---- */
 
@@ -52,22 +52,27 @@ static void swap_items(laves__background_tree *tree, size_t a, size_t b) {
 
 static double coordinate(laves__vec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
+/* For loops over the items of a range, of which the first ones are long. */
+static bool is_cancelled_at(const laves__background_tree *tree, const range *r, uint32_t i) {
+  return laves__cancelled_at(tree->context, "read", i - r->begin + 1, tree->item_count + 1);
+}
+
 /* Moves items whose centre is below the middle of all centres to the front; returns the first of the others. */
 static uint32_t part_at_middle(laves__background_tree *tree, const range *r) {
   laves__box3 centres = box3_empty();
-  for (uint32_t i = r->begin; i < r->end; i++) centres = box3_add(centres, item_centre(tree, i));
+  for (uint32_t i = r->begin; i < r->end && !is_cancelled_at(tree, r, i); i++) centres = box3_add(centres, item_centre(tree, i));
   const laves__vec3 sides = v3_sub(centres.upper, centres.lower);
   const int axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
   const double middle = coordinate(box3_centre(centres), axis);
   uint32_t parting = r->begin;
-  for (uint32_t i = r->begin; i < r->end; i++)
+  for (uint32_t i = r->begin; i < r->end && !is_cancelled_at(tree, r, i); i++)
     if (coordinate(item_centre(tree, i), axis) < middle) swap_items(tree, i, parting++);
   return parting;
 }
 
 static laves__box3 range_box(const laves__background_tree *tree, const range *r) {
   laves__box3 box = box3_empty();
-  for (uint32_t i = r->begin; i < r->end; i++) {
+  for (uint32_t i = r->begin; i < r->end && !is_cancelled_at(tree, r, i); i++) {
     const laves__box3 item = item_box(tree, i);
     box = box3_add(box3_add(box, item.lower), item.upper);
   }
@@ -115,8 +120,10 @@ static laves_result copy_input(const laves__mesh_input *input, laves__background
   if (!tree->points || !tree->values || !tree->items) return laves__fail_memory(tree->context, error);
   memcpy(tree->points, input->points, tree->point_count * sizeof *tree->points);
   memcpy(tree->values, input->values.items, tree->value_count * sizeof *tree->values);
-  for (size_t i = 0; i < tree->item_count * corners; i++)
+  for (size_t i = 0; i < tree->item_count * corners; i++) {
+    if (laves__cancelled_at(tree->context, "read", i, tree->item_count * corners)) return laves__fail_cancelled(error);
     tree->items[i] = corners == 4 ? (uint32_t)input->tets[i / 4][i % 4] : (uint32_t)i;
+  }
   return LAVES_OK;
 }
 

@@ -145,7 +145,7 @@ static laves_result find_places(laves_context *context, const laves__oracle *ora
                                 size_t *count, laves_error *error) {
   if (oracle->sample) {
     *count = oracle->sample(oracle->self, *spacing, points, sample_capacity);
-    return LAVES_OK;
+    return laves__is_cancelled(context) ? laves__fail_cancelled(error) : LAVES_OK;
   }
   const laves__vec3 widths = v3_sub(oracle->bounds.upper, oracle->bounds.lower);
   const double longest = fmax(widths.x, fmax(widths.y, widths.z));
