@@ -167,7 +167,7 @@ static void broken_promises_are_mended(void **state) {
 static void threads_change_nothing(void **state) {
   (void)state;
   static const laves_method methods[] = {LAVES_METHOD_AUTO, LAVES_METHOD_STUFF};
-  for (int i = 0; i < 4; i += test_stride() > 1 ? 3 : 1) {
+  for (int i = 0; i<4; i += test_stride()> 1 ? 3 : 1) {
     char first[33], other[33];
     for (int threads = 1; threads <= 3; threads += 2) {
       laves_context_options many = laves_context_options_default();
