@@ -404,8 +404,10 @@ static laves_result bring_home(work *w, laves_error *error) {
   for (int round = 0; result == LAVES_OK && round < ROUNDS && count_off(w) > 0; round++) {
     settle_all(w, home_floor);
     w->rounds = round >= SMOOTH_ROUNDS;
+    if (w->rounds > 0 && is_crowded(w, rough_share, crowd_min)) w->admit = far_outside;
     result = run_passes(w, 1, 1, error);
   }
+  w->admit = 1;
   w->rounds = 0;
   return result;
 }
