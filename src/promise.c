@@ -165,8 +165,7 @@ static laves_result mend_zone(laves__run *r, laves__components *before) {
  * all of the layer that hangs together with it, in the end in all of the solid that does, where the window is proved. `before`:
  * the components of the layer before it was improved. */
 static laves_result mend_promise(laves__run *r, laves__components *before) {
-  enum { WALLS = 2, ALL = 3, ROUNDS = 4 };
-  static const int reach[ROUNDS] = {1, 3, 3, 3}; /* cells */
+  enum { WALLS = 2, ALL = 6, ROUNDS }; /* the first rounds of those kinds */
   for (int round = 0; round < ROUNDS; round++) {
     laves_result result = find_forced(r);
     if (result != LAVES_OK) return result;
@@ -175,8 +174,8 @@ static laves_result mend_promise(laves__run *r, laves__components *before) {
     if (broken == 0) return LAVES_OK;
     const bool crowd = (double)broken > crowded * (double)r->layer.tet_count;
     bool memory = true;
-    if (round == WALLS) memory = laves__zone_walls(r->guarantee, &r->layer, r->forced, &r->lattice);
-    laves__zone_around(r->guarantee, &r->layer, r->forced, reach[round], &r->lattice);
+    if (round >= WALLS) memory = laves__zone_walls(r->guarantee, &r->layer, r->forced, before, &r->lattice);
+    laves__zone_around(r->guarantee, &r->layer, r->forced, round == 0 ? 1 : 3, &r->lattice);
     if (crowd || round == ALL) memory = memory && laves__zone_components(&r->lattice);
     result = memory ? mend_zone(r, before) : laves__fail_memory(r->context, r->error);
     if (result != LAVES_OK) return result;

@@ -1,8 +1,6 @@
 /* Zones grow from the tets that break the promise: first some cells around them, in the end the whole component. */
 #include "stuff/zone.h"
 
-#include "mesh/components.h"
-
 static const uint32_t all_sites = (UINT32_C(1) << LAVES__C15_SITES) - 1;
 static const double radians = 3.14159265358979323846 / 180;
 
@@ -53,23 +51,24 @@ void laves__zone_around(const laves__guarantee *guarantee, const laves__layer *l
 }
 
 bool laves__zone_walls(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced,
-                       laves__lattice *lattice) {
+                       const laves__components *walls, laves__lattice *lattice) {
   const laves__guarantee promised = promised_window(guarantee);
-  laves__components walls;
-  bool *broken = NULL;
-  const bool found = laves__components_find(layer, &walls);
-  if (found) broken = laves__alloc_zeroed(layer->context, walls.count, sizeof *broken);
-  for (size_t t = 0; broken && t < layer->tet_count; t++)
-    if (is_broken(layer, t, &promised) && !(forced && forced[t])) broken[walls.of[layer->tet[t][0]]] = true;
-  for (size_t v = 0; broken && v < layer->vertex_count; v++) {
-    const uint32_t id = layer->origin[v];
-    if (id != LAVES__NO_ORIGIN && walls.of[v] >= 0 && broken[walls.of[v]])
-      lattice->record[id / LAVES__C15_SITES].zone = all_sites;
+  bool *broken = laves__alloc_zeroed(layer->context, walls->count, sizeof *broken);
+  if (!broken) return false;
+  for (size_t t = 0; t < layer->tet_count; t++) {
+    if (!is_broken(layer, t, &promised) || (forced && forced[t])) continue;
+    for (int k = 0; k < 4; k++) {
+      const size_t v = (size_t)layer->tet[t][k]; /* improvement may have added it */
+      if (v < walls->vertex_count && walls->of[v] >= 0) broken[walls->of[v]] = true;
+    }
   }
-  const bool memory = broken != NULL;
-  laves__free(layer->context, broken, walls.count, sizeof *broken);
-  laves__components_free(&walls);
-  return memory;
+  for (size_t v = 0; v < walls->vertex_count; v++) {
+    const uint32_t id = layer->origin[v];
+    if (id == LAVES__NO_ORIGIN || walls->of[v] < 0 || !broken[walls->of[v]]) continue;
+    lattice->record[id / LAVES__C15_SITES].zone = all_sites;
+  }
+  laves__free(layer->context, broken, walls->count, sizeof *broken);
+  return true;
 }
 
 void laves__zone_vertices(const laves__lattice *lattice, const laves__layer *layer, bool *in_zone) {
