@@ -81,7 +81,7 @@ static const double crowded = 0.001;
 static laves_result improve(laves__run *r, bool again) {
   if (!r->options->improve) return LAVES_OK;
   laves__stage_begin(r);
-  const bool held = r->guarantee && (r->strict || laves__count_broken(r->guarantee, &r->layer, NULL) == 0);
+  const bool held = r->guarantee && laves__count_broken(r->guarantee, &r->layer, NULL) == 0;
   const laves__window aim = {.min_dihedral = r->options->min_dihedral + 1.5,
                              .max_dihedral = fmin(r->options->max_dihedral - 3, 179),
                              .volume_length = r->options->volume_length > 0 ? r->options->volume_length + 0.05 : 0,
@@ -176,7 +176,6 @@ static laves_result mend_promise(laves__run *r, laves__components *before) {
     bool memory = true;
     if (round >= WALLS) memory = laves__zone_walls(r->guarantee, &r->layer, r->forced, before, &r->lattice);
     laves__zone_around(r->guarantee, &r->layer, r->forced, round == 0 ? 1 : 3, &r->lattice);
-    r->strict = round >= WALLS; /* what is stuffed as a whole begins inside the window and shall stay there */
     if (crowd || round == ALL) memory = memory && laves__zone_components(&r->lattice);
     result = memory ? mend_zone(r, before) : laves__fail_memory(r->context, r->error);
     if (result != LAVES_OK) return result;
@@ -196,7 +195,6 @@ laves_result laves__improve_boundary(laves__run *r) {
     if (result == LAVES_OK) result = memory ? improve_layer(r) : laves__fail_memory(r->context, r->error);
   }
   if (result == LAVES_OK && laves__may_mend(r)) result = mend_promise(r, &before);
-  r->strict = false;
   laves__components_free(&before);
   return result;
 }

@@ -45,7 +45,6 @@ typedef struct laves__run {
   size_t distant;                    /* places still further away than asked */
   laves__vec3 distant_place;         /* the furthest of them */
   bool rough;                        /* the solid is rougher than the size */
-  bool strict;                       /* improvement holds the promised window though some tets are outside it */
   laves__region_counts regions;
   double wall, cpu; /* at the start of the stage under way */
 } laves__run;

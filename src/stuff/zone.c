@@ -65,7 +65,9 @@ bool laves__zone_walls(const laves__guarantee *guarantee, const laves__layer *la
   for (size_t v = 0; v < walls->vertex_count; v++) {
     const uint32_t id = layer->origin[v];
     if (id == LAVES__NO_ORIGIN || walls->of[v] < 0 || !broken[walls->of[v]]) continue;
-    lattice->record[id / LAVES__C15_SITES].zone = all_sites;
+    const laves__record *r = &lattice->record[id / LAVES__C15_SITES];
+    for (int k = 0; k < 27; k++)
+      if (r->around[k] >= 0) lattice->record[r->around[k]].zone = all_sites;
   }
   laves__free(layer->context, broken, walls->count, sizeof *broken);
   return true;

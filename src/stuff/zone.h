@@ -15,8 +15,9 @@ size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer
 void laves__zone_around(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced, int reach,
                         laves__lattice *lattice);
 
-/* Puts in the zone all cells of those components of the layer in which a tet is outside the promised window; they are given as
- * they were before improvement. False when memory is short. */
+/* Puts in the zone all cells of those components of the layer in which a tet is outside the promised window, and the cells around
+ * them: none of their tets then has a site that another wall snapped. The components are given as they were before improvement.
+ * False when memory is short. */
 bool laves__zone_walls(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced,
                        const laves__components *walls, laves__lattice *lattice);
 
