@@ -2,7 +2,10 @@
  *
  *     features -> improve -> (let go of features that cost too much -> improve)
  *     and where the promise is broken: stuff around the place -> features beyond it -> improve, in growing zones */
+#include <string.h>
+
 #include "improve/release.h"
+#include "mesh/components.h"
 #include "run.h"
 #include "stuff/zone.h"
 
@@ -126,23 +129,55 @@ static laves_result find_forced(laves__run *r) {
   return LAVES_OK;
 }
 
+/* Improves a layer that was made anew: only those components that are not as they were before. `improved`: what was made of
+ * the layer whose components were `before`. */
+static laves_result improve_changed(laves__run *r, const laves__layer *improved, const laves__components *before,
+                                    const laves__components *now) {
+  laves__twins twins;
+  laves_result result = LAVES_OK;
+  if (!laves__twins_find(improved, before, now, &twins)) {
+    result = laves__fail_memory(r->context, r->error);
+  } else {
+    laves__twins_set_aside(&twins, &r->layer);
+    result = improve_layer(r);
+    if (result == LAVES_OK && !laves__twins_bring_back(&twins, &r->layer)) result = laves__fail_memory(r->context, r->error);
+  }
+  laves__twins_free(&twins);
+  return result;
+}
+
+/* The boundary made anew by stuffing in the lattice's zone, held to features and improved. */
+static laves_result mend_zone(laves__run *r, laves__components *before) {
+  laves__layer improved = r->layer;
+  laves__components now = {0};
+  memset(&r->layer, 0, sizeof r->layer);
+  laves_result result = laves__stuff_zone(r);
+  if (result == LAVES_OK && r->frame.features) result = hold_features(r);
+  if (result == LAVES_OK && !laves__components_find(&r->layer, &now)) result = laves__fail_memory(r->context, r->error);
+  if (result == LAVES_OK) result = improve_changed(r, &improved, before, &now);
+  laves__layer_free(&improved);
+  laves__components_free(before);
+  *before = now;
+  return result;
+}
+
 /* Where the promised window is broken, the boundary is made anew by stuffing: around the place, in a wider neighbourhood, in
- * the end in all that hangs together with it, where the window is proved. */
-static laves_result mend_promise(laves__run *r) {
-  enum { REACHES = 2 };
-  static const int reach[REACHES] = {1, 3}; /* cells */
-  for (int round = 0; round <= REACHES; round++) {
+ * all of the layer that hangs together with it, in the end in all of the solid that does, where the window is proved. `before`:
+ * the components of the layer before it was improved. */
+static laves_result mend_promise(laves__run *r, laves__components *before) {
+  enum { WALLS = 2, ALL = 6, ROUNDS }; /* the first rounds of those kinds */
+  for (int round = 0; round < ROUNDS; round++) {
     laves_result result = find_forced(r);
     if (result != LAVES_OK) return result;
     const size_t broken = laves__count_broken(r->guarantee, &r->layer, r->forced);
     if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
     if (broken == 0) return LAVES_OK;
     const bool crowd = (double)broken > crowded * (double)r->layer.tet_count;
-    laves__zone_around(r->guarantee, &r->layer, r->forced, reach[round < REACHES ? round : REACHES - 1], &r->lattice);
-    if ((crowd || round == REACHES) && !laves__zone_components(&r->lattice)) return laves__fail_memory(r->context, r->error);
-    result = laves__stuff_zone(r);
-    if (result == LAVES_OK && r->frame.features) result = hold_features(r);
-    if (result == LAVES_OK) result = improve_layer(r);
+    bool memory = true;
+    if (round >= WALLS) memory = laves__zone_walls(r->guarantee, &r->layer, r->forced, before, &r->lattice);
+    laves__zone_around(r->guarantee, &r->layer, r->forced, round == 0 ? 1 : 3, &r->lattice);
+    if (crowd || round == ALL) memory = memory && laves__zone_components(&r->lattice);
+    result = memory ? mend_zone(r, before) : laves__fail_memory(r->context, r->error);
     if (result != LAVES_OK) return result;
   }
   return LAVES_OK;
@@ -150,11 +185,16 @@ static laves_result mend_promise(laves__run *r) {
 
 /* The layer improved, and inside the promised window. */
 laves_result laves__improve_boundary(laves__run *r) {
-  laves_result result = improve_layer(r);
+  laves__components before = {0};
+  bool memory = !laves__may_mend(r) || laves__components_find(&r->layer, &before);
+  laves_result result = memory ? improve_layer(r) : laves__fail_memory(r->context, r->error);
   if (result == LAVES_OK && laves__may_mend(r) && laves__filled_share(r) == 0) { /* flat tets only, all peeled off */
     result = laves__stuff_everything(r);
-    if (result == LAVES_OK) result = improve_layer(r);
+    laves__components_free(&before);
+    if (result == LAVES_OK) memory = laves__components_find(&r->layer, &before);
+    if (result == LAVES_OK) result = memory ? improve_layer(r) : laves__fail_memory(r->context, r->error);
   }
-  if (result == LAVES_OK && laves__may_mend(r)) result = mend_promise(r);
+  if (result == LAVES_OK && laves__may_mend(r)) result = mend_promise(r, &before);
+  laves__components_free(&before);
   return result;
 }

@@ -335,6 +335,16 @@ static bool is_crowded(const work *w, double share, size_t least) {
   return bad > least && (double)bad > share * (double)w->layer->tet_count;
 }
 
+/* Whether the bad ones are a large share of the tets that live. */
+static bool is_rough(const work *w) {
+  size_t bad = 0, alive = 0;
+  for (size_t t = 0; t < w->layer->tet_count; t++) {
+    bad += is_bad(w, (int32_t)t);
+    alive += w->layer->tet[t][0] >= 0;
+  }
+  return bad > crowd_min && (double)bad > rough_share * (double)alive;
+}
+
 /* Patience is new for all that remains. */
 static void forget(work *w) {
   for (size_t t = 0; t < w->layer->tet_count; t++) {
@@ -396,7 +406,7 @@ static void leave_out_sharp(work *w, const laves__window *window) {
 }
 
 /* Creases and corners come first: their vertices go where they belong, as far as tets allow, and smoothing and contraction make
- * room for the rest of the way. */
+ * room for the rest of the way. Where the solid is noise, contraction is for tets far outside only. */
 static laves_result bring_home(work *w, laves_error *error) {
   enum { ROUNDS = 6, SMOOTH_ROUNDS = 2 };
   static const double home_floor = 0.05; /* quality that coming home may cost: about 9 degrees */
@@ -404,8 +414,10 @@ static laves_result bring_home(work *w, laves_error *error) {
   for (int round = 0; result == LAVES_OK && round < ROUNDS && count_off(w) > 0; round++) {
     settle_all(w, home_floor);
     w->rounds = round >= SMOOTH_ROUNDS;
+    if (w->rounds > 0 && is_rough(w)) w->admit = far_outside;
     result = run_passes(w, 1, 1, error);
   }
+  w->admit = 1;
   w->rounds = 0;
   return result;
 }

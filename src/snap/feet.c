@@ -94,15 +94,19 @@ static void find_record_feet(const laves__frame *frame, const laves__lattice *la
   }
 }
 
-/* Whether a point lies on a side (-1 inside, 1 outside), at least `depth` from the surface. */
-static bool lies_beyond(const laves__frame *frame, laves__vec3 point, double depth, int side) {
-  double phi;
-  laves__frame_evaluate(frame, 1, &point, &phi, NULL);
+/* Whether a point with the value phi lies on a side (-1 inside, 1 outside), at least `depth` from the surface. */
+static bool is_beyond(const laves__frame *frame, laves__vec3 point, double phi, double depth, int side) {
   if (!(side * phi > 0)) return false;
   if (frame->oracle->is_distance) return side * phi > depth;
   uint32_t hint = LAVES__NO_HINT; /* phi has no unit: the foot tells */
   laves__vec3 foot, normal;
   return !laves__frame_project(frame, point, depth, &hint, &foot, &normal) || v3_distance(point, foot) > depth;
+}
+
+static bool lies_beyond(const laves__frame *frame, laves__vec3 point, double depth, int side) {
+  double phi;
+  laves__frame_evaluate(frame, 1, &point, &phi, NULL);
+  return is_beyond(frame, point, phi, depth, side);
 }
 
 bool laves__lies_inside(const laves__frame *frame, laves__vec3 point, double depth) {
@@ -111,6 +115,15 @@ bool laves__lies_inside(const laves__frame *frame, laves__vec3 point, double dep
 
 bool laves__lies_outside(const laves__frame *frame, laves__vec3 point, double depth) {
   return lies_beyond(frame, point, depth, 1);
+}
+
+bool laves__any_lies_outside(const laves__frame *frame, int count, const laves__vec3 *points, double depth) {
+  double phi[LAVES__POINTS_MAX];
+  LAVES_ASSERT(count <= LAVES__POINTS_MAX);
+  laves__frame_evaluate(frame, (size_t)count, points, phi, NULL);
+  for (int i = 0; i < count; i++)
+    if (is_beyond(frame, points[i], phi[i], depth, 1)) return true;
+  return false;
 }
 
 typedef struct search {

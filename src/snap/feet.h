@@ -41,5 +41,8 @@ void laves__feet_free(laves__feet *feet);
 bool laves__lies_inside(const laves__frame *frame, laves__vec3 point, double depth);
 /* The same outside. */
 bool laves__lies_outside(const laves__frame *frame, laves__vec3 point, double depth);
+/* Whether any of at most LAVES__POINTS_MAX does; quicker than one by one where they are near one another. */
+enum { LAVES__POINTS_MAX = 32 };
+bool laves__any_lies_outside(const laves__frame *frame, int count, const laves__vec3 *points, double depth);
 
 #endif

@@ -65,18 +65,16 @@ static bool find_on(const laves__lattice *lattice, const laves__record *r, uint3
 /* Whether the outside reaches deep into a tet of a wall, though its middle lies inside: a hole narrower than the size passes
  * there, and would be closed. */
 static bool is_pierced(const search *s, const laves__vec3 p[4], double scale) {
-  enum { STEPS = 4 };
+  enum { STEPS = 4, POINTS = 4 + 6 * (STEPS - 1) };
+  laves__vec3 at[POINTS];
+  int count = 0;
   for (int k = 0; k < 4; k++) {
     const uint8_t *f = laves__tet_face[k];
-    const laves__vec3 middle = v3_scale(v3_add(v3_add(p[f[0]], p[f[1]]), p[f[2]]), 1.0 / 3);
-    if (laves__lies_outside(s->frame, middle, pierced_min * scale)) return true;
+    at[count++] = v3_scale(v3_add(v3_add(p[f[0]], p[f[1]]), p[f[2]]), 1.0 / 3);
   }
   for (int e = 0; e < 6; e++)
-    for (int i = 1; i < STEPS; i++) {
-      const laves__vec3 at = v3_lerp(p[laves__tet_edge[e][0]], p[laves__tet_edge[e][1]], (double)i / STEPS);
-      if (laves__lies_outside(s->frame, at, pierced_min * scale)) return true;
-    }
-  return false;
+    for (int i = 1; i < STEPS; i++) at[count++] = v3_lerp(p[laves__tet_edge[e][0]], p[laves__tet_edge[e][1]], (double)i / STEPS);
+  return laves__any_lies_outside(s->frame, count, at, pierced_min * scale);
 }
 
 static void judge_tet(const search *s, laves__tet tet) {

@@ -3,6 +3,7 @@
 #define LAVES_STUFF_ZONE_H
 
 #include "background/lattice.h"
+#include "mesh/components.h"
 #include "mesh/layer.h"
 #include "stuff/rule.h"
 
@@ -13,6 +14,12 @@ size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer
 /* Puts in the zone all sites of the cells within `reach` cells of each tet outside the promised window. */
 void laves__zone_around(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced, int reach,
                         laves__lattice *lattice);
+
+/* Puts in the zone all cells of those components of the layer in which a tet is outside the promised window, and the cells around
+ * them: none of their tets then has a site that another wall snapped. The components are given as they were before improvement.
+ * False when memory is short. */
+bool laves__zone_walls(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced,
+                       const laves__components *walls, laves__lattice *lattice);
 
 /* Which vertices of the layer stand where tets are cut: in_zone[layer->vertex_count]. */
 void laves__zone_vertices(const laves__lattice *lattice, const laves__layer *layer, bool *in_zone);
