@@ -64,7 +64,7 @@ static inline __attribute__((always_inline)) dual apply(laves__op op, dual a, du
     case LAVES__OP_NEGATE:
       return chain(-a.value, -1, a);
     case LAVES__OP_ABS:
-      return a.value < 0 ? chain(-a.value, -1, a) : a;
+      return a.value < 0 ? chain(-a.value, -1, a) : with(fabs(a.value), a.gradient);
     case LAVES__OP_SQUARE:
       return chain(a.value * a.value, 2 * a.value, a);
     case LAVES__OP_SQRT: {
