@@ -54,7 +54,8 @@ static dual leaf_value(const laves__oracle *leaf, dual a, dual b, dual c) {
 }
 
 /* Which of two equal operands has a slope: min(f, 0), as in the distance of a box, keeps that of f where f is zero, so that
- * Newton's method can end exactly on the surface. */
+ * Newton's method can end exactly on the surface. The value is that of plain evaluation all the same: zeros have signs, which
+ * show in atan2. */
 static inline bool prefer_first(dual a, dual b) { return a.value == b.value && v3_norm2(b.gradient) == 0; }
 
 /* What one operation does, but LEAF. Inlined with a constant operation it is what the operation needs and no more. */
@@ -63,7 +64,7 @@ static inline __attribute__((always_inline)) dual apply(laves__op op, dual a, du
     case LAVES__OP_NEGATE:
       return chain(-a.value, -1, a);
     case LAVES__OP_ABS:
-      return a.value < 0 ? chain(-a.value, -1, a) : a;
+      return a.value < 0 ? chain(-a.value, -1, a) : with(fabs(a.value), a.gradient);
     case LAVES__OP_SQUARE:
       return chain(a.value * a.value, 2 * a.value, a);
     case LAVES__OP_SQRT: {
@@ -99,9 +100,9 @@ static inline __attribute__((always_inline)) dual apply(laves__op op, dual a, du
     case LAVES__OP_DIV:
       return quotient(a, b);
     case LAVES__OP_MIN:
-      return a.value < b.value || prefer_first(a, b) ? a : b;
+      return with(min_of(a.value, b.value), a.value < b.value || prefer_first(a, b) ? a.gradient : b.gradient);
     case LAVES__OP_MAX:
-      return a.value > b.value || prefer_first(a, b) ? a : b;
+      return with(max_of(a.value, b.value), a.value > b.value || prefer_first(a, b) ? a.gradient : b.gradient);
     case LAVES__OP_POW:
       return power(a, b);
     case LAVES__OP_ATAN2:
