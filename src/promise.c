@@ -129,13 +129,13 @@ static laves_result find_forced(laves__run *r) {
   return LAVES_OK;
 }
 
-/* Improves a layer that was made anew: only those components that are not as they were before. `improved`: what was made of
- * the layer whose components were `before`. */
+/* Improves a layer that was made anew: only those components that are not as they were before, or were broken. `improved`: what
+ * was made of the layer whose components were `before`. */
 static laves_result improve_changed(laves__run *r, const laves__layer *improved, const laves__components *before,
-                                    const laves__components *now) {
+                                    const laves__components *now, const bool *broken) {
   laves__twins twins;
   laves_result result = LAVES_OK;
-  if (!laves__twins_find(improved, before, now, &twins)) {
+  if (!laves__twins_find(improved, before, now, broken, &twins)) {
     result = laves__fail_memory(r->context, r->error);
   } else {
     laves__twins_set_aside(&twins, &r->layer);
@@ -147,14 +147,14 @@ static laves_result improve_changed(laves__run *r, const laves__layer *improved,
 }
 
 /* The boundary made anew by stuffing in the lattice's zone, held to features and improved. */
-static laves_result mend_zone(laves__run *r, laves__components *before) {
+static laves_result mend_zone(laves__run *r, laves__components *before, const bool *broken) {
   laves__layer improved = r->layer;
   laves__components now = {0};
   memset(&r->layer, 0, sizeof r->layer);
   laves_result result = laves__stuff_zone(r);
   if (result == LAVES_OK && r->frame.features) result = hold_features(r);
   if (result == LAVES_OK && !laves__components_find(&r->layer, &now)) result = laves__fail_memory(r->context, r->error);
-  if (result == LAVES_OK) result = improve_changed(r, &improved, before, &now);
+  if (result == LAVES_OK) result = improve_changed(r, &improved, before, &now, broken);
   laves__layer_free(&improved);
   laves__components_free(before);
   *before = now;
@@ -173,11 +173,15 @@ static laves_result mend_promise(laves__run *r, laves__components *before) {
     if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
     if (broken == 0) return LAVES_OK;
     const bool crowd = (double)broken > crowded * (double)r->layer.tet_count;
-    bool memory = true;
-    if (round >= WALLS) memory = laves__zone_walls(r->guarantee, &r->layer, r->forced, before, &r->lattice);
+    const size_t walls = before->count;
+    bool *broken_wall = laves__alloc(r->context, walls, sizeof *broken_wall);
+    bool memory = broken_wall != NULL;
+    if (memory) laves__find_broken_walls(r->guarantee, &r->layer, r->forced, before, broken_wall);
+    if (memory && round >= WALLS) laves__zone_walls(&r->layer, before, broken_wall, &r->lattice);
     laves__zone_around(r->guarantee, &r->layer, r->forced, round == 0 ? 1 : 3, &r->lattice);
     if (crowd || round == ALL) memory = memory && laves__zone_components(&r->lattice);
-    result = memory ? mend_zone(r, before) : laves__fail_memory(r->context, r->error);
+    result = memory ? mend_zone(r, before, broken_wall) : laves__fail_memory(r->context, r->error);
+    laves__free(r->context, broken_wall, walls, sizeof *broken_wall);
     if (result != LAVES_OK) return result;
   }
   return LAVES_OK;

@@ -147,14 +147,15 @@ static bool find_owners(laves__twins *t) {
 }
 
 bool laves__twins_find(const laves__layer *improved, const laves__components *before, const laves__components *now,
-                       laves__twins *t) {
+                       const bool *again, laves__twins *t) {
   laves_context *context = improved->context;
   *t = (laves__twins){.improved = improved, .before = before, .now = now};
   t->owner = laves__alloc(context, improved->vertex_count, sizeof *t->owner);
   t->twin = laves__alloc(context, before->count, sizeof *t->twin);
   if (!t->owner || !t->twin || !match(t)) return false;
   const bool owned = find_owners(t);
-  for (size_t i = 0; i < before->count && !owned; i++) t->twin[i] = -1;
+  for (size_t i = 0; i < before->count; i++)
+    if (!owned || (again && again[i])) t->twin[i] = -1;
   return true;
 }
 

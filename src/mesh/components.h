@@ -30,9 +30,10 @@ typedef struct laves__twins {
   int32_t *twin;  /* [before->count] component now, or -1 */
 } laves__twins;
 
-/* Which components of `now` are as they were before. */
+/* Which components of `now` are as they were before. `again`: those of `before` that shall be improved again all the same; NULL:
+ * none. False when memory is short. */
 bool laves__twins_find(const laves__layer *improved, const laves__components *before, const laves__components *now,
-                       laves__twins *t);
+                       const bool *again, laves__twins *t);
 void laves__twins_free(laves__twins *t);
 /* Takes their tets out of a layer just made, of which `now` are the components. */
 void laves__twins_set_aside(const laves__twins *t, laves__layer *layer);

@@ -50,11 +50,10 @@ void laves__zone_around(const laves__guarantee *guarantee, const laves__layer *l
   }
 }
 
-bool laves__zone_walls(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced,
-                       const laves__components *walls, laves__lattice *lattice) {
+void laves__find_broken_walls(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced,
+                              const laves__components *walls, bool *broken) {
   const laves__guarantee promised = promised_window(guarantee);
-  bool *broken = laves__alloc_zeroed(layer->context, walls->count, sizeof *broken);
-  if (!broken) return false;
+  for (size_t i = 0; i < walls->count; i++) broken[i] = false;
   for (size_t t = 0; t < layer->tet_count; t++) {
     if (!is_broken(layer, t, &promised) || (forced && forced[t])) continue;
     for (int k = 0; k < 4; k++) {
@@ -62,6 +61,9 @@ bool laves__zone_walls(const laves__guarantee *guarantee, const laves__layer *la
       if (v < walls->vertex_count && walls->of[v] >= 0) broken[walls->of[v]] = true;
     }
   }
+}
+
+void laves__zone_walls(const laves__layer *layer, const laves__components *walls, const bool *broken, laves__lattice *lattice) {
   for (size_t v = 0; v < walls->vertex_count; v++) {
     const uint32_t id = layer->origin[v];
     if (id == LAVES__NO_ORIGIN || walls->of[v] < 0 || !broken[walls->of[v]]) continue;
@@ -69,8 +71,6 @@ bool laves__zone_walls(const laves__guarantee *guarantee, const laves__layer *la
     for (int k = 0; k < 27; k++)
       if (r->around[k] >= 0) lattice->record[r->around[k]].zone = all_sites;
   }
-  laves__free(layer->context, broken, walls->count, sizeof *broken);
-  return true;
 }
 
 void laves__zone_vertices(const laves__lattice *lattice, const laves__layer *layer, bool *in_zone) {

@@ -17,9 +17,12 @@ void laves__zone_around(const laves__guarantee *guarantee, const laves__layer *l
 
 /* Puts in the zone all cells of those components of the layer in which a tet is outside the promised window, and the cells around
  * them: none of their tets then has a site that another wall snapped. The components are given as they were before improvement.
- * False when memory is short. */
-bool laves__zone_walls(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced,
-                       const laves__components *walls, laves__lattice *lattice);
+ */
+void laves__zone_walls(const laves__layer *layer, const laves__components *walls, const bool *broken, laves__lattice *lattice);
+
+/* In which of the walls a tet is outside the promised window: broken[walls->count]. */
+void laves__find_broken_walls(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced,
+                              const laves__components *walls, bool *broken);
 
 /* Which vertices of the layer stand where tets are cut: in_zone[layer->vertex_count]. */
 void laves__zone_vertices(const laves__lattice *lattice, const laves__layer *layer, bool *in_zone);

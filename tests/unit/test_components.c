@@ -83,7 +83,7 @@ static void what_did_not_change_comes_back_improved(void **state) {
   assert_true(laves__components_find(&fresh.layer, &now));
   assert_int_equal(laves__improve(&old.frame, &window, &old.layer, &error), LAVES_OK);
 
-  assert_true(laves__twins_find(&old.layer, &before, &now, &twins));
+  assert_true(laves__twins_find(&old.layer, &before, &now, NULL, &twins));
   assert_int_equal(twins.twin[0], -1);
   assert_int_equal(twins.twin[1], 1);
   const size_t changed = count_alive(&fresh.layer, now.of, 0), kept = count_alive(&old.layer, twins.owner, 1);
