@@ -103,7 +103,7 @@ laves_result laves__boundary_edges_find(laves_context *context, const laves_mesh
   for (size_t i = 0; done && i < sides; i++)
     side[i] = (laves__keyed){key_of(boundary->faces[i / 3][i % 3], boundary->faces[i / 3][(i % 3 + 1) % 3]), i};
   if (done) {
-    laves__sort_keyed(side, scratch, sides);
+    laves__sort_keyed(NULL, side, scratch, sides);
     edges->count = count_edges(side, sides);
   }
   if (edges->count > LAVES__FACES_MAX) {

@@ -99,7 +99,7 @@ static size_t sort_triangles(const laves_mesh *mesh, const laves__boundary *boun
     const triangle t = triangle_of(mesh, boundary->faces[order[i].value], origin);
     order[i].key = morton(middle(&t), &box);
   }
-  laves__sort_keyed(order, scratch, count);
+  laves__sort_keyed(NULL, order, scratch, count);
   return count;
 }
 

@@ -157,7 +157,8 @@ typedef struct laves__keyed {
   uint64_t key, value;
 } laves__keyed;
 
-/* Sorts by key, keeping the order of equal keys; `scratch` has room for as many. */
-void laves__sort_keyed(laves__keyed *items, laves__keyed *scratch, size_t count);
+/* Sorts by key, keeping the order of equal keys; `scratch` has room for as many.
+ * context: asked whether to cancel; then the order is none and the result false. NULL: it is not asked. */
+bool laves__sort_keyed(laves_context *context, laves__keyed *items, laves__keyed *scratch, size_t count);
 
 #endif

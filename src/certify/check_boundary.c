@@ -117,10 +117,17 @@ static laves_result check_seams(laves_context *context, seams *s, laves_check *c
     result = laves__fail_memory(context, error);
     goto clean_up;
   }
-  list_edges(s);
-  laves__sort_keyed(s->edges, s->scratch, corners);
-  const size_t edges = sew(s, &check->nonmanifold_edges);
-  const size_t fans = count_fans(s, &check->nonmanifold_vertices);
+  size_t edges = 0, fans = 0;
+  bool go_on = !laves__cancelled(context, "check", 0.8);
+  if (go_on) list_edges(s);
+  go_on = go_on && laves__sort_keyed(context, s->edges, s->scratch, corners);
+  if (go_on) edges = sew(s, &check->nonmanifold_edges);
+  go_on = go_on && !laves__cancelled(context, "check", 0.9);
+  if (go_on) fans = count_fans(s, &check->nonmanifold_vertices);
+  if (!go_on) {
+    result = laves__fail_cancelled(error);
+    goto clean_up;
+  }
   check->boundary_components = count_roots(s->face_parent, s->face_count);
   check->genus = (2 * (int64_t)check->boundary_components - ((int64_t)fans - (int64_t)edges + (int64_t)s->face_count)) / 2;
 clean_up:
@@ -156,12 +163,12 @@ static void sort_faces(const int32_t (*faces)[3], size_t count, laves__keyed *it
     rotate(faces[i], r);
     items[i] = (laves__keyed){r[2], i};
   }
-  laves__sort_keyed(items, scratch, count);
+  laves__sort_keyed(NULL, items, scratch, count);
   for (size_t i = 0; i < count; i++) {
     rotate(faces[items[i].value], r);
     items[i].key = (uint64_t)r[0] << 32 | r[1];
   }
-  laves__sort_keyed(items, scratch, count);
+  laves__sort_keyed(NULL, items, scratch, count);
 }
 
 static int compare_faces(const int32_t a[3], const int32_t b[3]) {

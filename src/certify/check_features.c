@@ -70,7 +70,7 @@ static bool sort_places(laves_context *context, laves__feature_places *list) {
     order[i].key = ~order[i].key;
   }
   if (done) {
-    laves__sort_keyed(order, scratch, count);
+    laves__sort_keyed(NULL, order, scratch, count);
     memcpy(copy, list->items, count * sizeof *copy);
     for (size_t i = 0; i < count; i++) list->items[i] = copy[order[i].value];
   }

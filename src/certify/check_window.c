@@ -106,7 +106,7 @@ static void place_block(void *user, size_t begin, size_t end, int worker) {
 static laves_result describe(laves_context *context, window *w, size_t count, size_t capacity, laves_error *error) {
   laves__keyed *scratch = laves__alloc(context, count, sizeof *scratch);
   if (!scratch) return laves__fail_memory(context, error);
-  laves__sort_keyed(w->found, scratch, count);
+  laves__sort_keyed(NULL, w->found, scratch, count);
   laves__free(context, scratch, count, sizeof *scratch);
   if (laves__parallel_for(context, "check", count < capacity ? count : capacity, 16, place_block, w)) return LAVES_OK;
   return laves__fail_cancelled(error);

@@ -79,7 +79,7 @@ static void sort_beyond(const laves__samples *samples, const limit *l, laves__ke
     memcpy(&bits, &distance, sizeof bits);
     order[count++] = (laves__keyed){~bits, i};
   }
-  laves__sort_keyed(order, scratch, count);
+  laves__sort_keyed(NULL, order, scratch, count);
 }
 
 /* Chooses the places among the sorted samples; returns how many there are in all, or so far when it is cancelled. */

@@ -13,9 +13,10 @@ static void distribute(const laves__keyed *from, laves__keyed *to, size_t count,
   for (size_t i = 0; i < count; i++) to[start[from[i].key >> shift & 255]++] = from[i];
 }
 
-void laves__sort_keyed(laves__keyed *items, laves__keyed *scratch, size_t count) {
+bool laves__sort_keyed(laves_context *context, laves__keyed *items, laves__keyed *scratch, size_t count) {
   laves__keyed *from = items, *to = scratch;
-  for (int shift = 0; shift < 64; shift += 8) {
+  bool done = true;
+  for (int shift = 0; shift < 64 && done; shift += 8) {
     size_t counts[256] = {0};
     for (size_t i = 0; i < count; i++) counts[from[i].key >> shift & 255]++;
     if (count == 0 || counts[from[0].key >> shift & 255] == count) continue;
@@ -23,6 +24,8 @@ void laves__sort_keyed(laves__keyed *items, laves__keyed *scratch, size_t count)
     laves__keyed *swap = from;
     from = to;
     to = swap;
+    done = !context || !laves__cancelled(context, "check", 0.8);
   }
   if (from != items) memcpy(items, from, count * sizeof *items);
+  return done;
 }
