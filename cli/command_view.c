@@ -100,7 +100,7 @@ static laves_result read_cut(session *run, const laves_mesh *mesh, const picture
 static laves_result write_picture(session *run, const scene *shown, const picture_options *how, const char *path) {
   const bool clear = how->background == PICTURE_TRANSPARENT;
   const size_t count = (size_t)how->width * (size_t)how->height;
-  uint8_t *pixels = malloc(CHANNELS * count);
+  uint8_t *pixels = malloc(CHANNELS * (count ? count : 1));
   if (!pixels || !picture_draw(shown, how, pixels)) {
     free(pixels);
     return session_fail(run, LAVES_ERROR_MEMORY, "no memory for a picture of %d by %d pixels", how->width, how->height);

@@ -369,7 +369,7 @@ bool scene_build(const laves_mesh *mesh, const scene_options *options, scene *ou
   if (!marks || !table_reserve(&table, 4 * laves_mesh_face_count(mesh)) || !collect_faces(mesh, marks, &table, &out->kept_tets)) {
     goto done;
   }
-  out->faces = malloc((table.count + 1) * sizeof *out->faces);
+  out->faces = calloc(table.count + 1, sizeof *out->faces);
   if (!out->faces) {
     goto done;
   }
