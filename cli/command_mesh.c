@@ -97,8 +97,11 @@ static void say_stages(const mesh_run *all) {
   text_say("  write        %10s", text_seconds(&wall, all->plan.seconds));
 }
 
-/* A fault of the program, but the mesh is valid and may still be of use. */
-static bool promise_broken(const mesh_run *all) { return all->has_certificate && !all->certificate.promise_holds; }
+/* A fault of the program, but the mesh is valid and may still be of use. What a crease of the solid forces is none. */
+static bool promise_broken(const mesh_run *all) {
+  return all->has_certificate && !all->certificate.promise_holds &&
+         all->certificate.exception_counts[LAVES_EXCEPTION_OUTSIDE_PROMISED] > all->report.forced_tets;
+}
 
 static void say_relaxed(const mesh_run *all) {
   const laves_report *report = &all->report;
@@ -248,6 +251,7 @@ static void write_report(json *out, const mesh_run *all) {
   json_integer(out, "stuffed_vertices", (int64_t)report->stuffed_vertices);
   json_integer(out, "relaxed_vertices", (int64_t)report->relaxed_vertices);
   json_number(out, "relaxed_max", report->relaxed_max);
+  json_integer(out, "forced_tets", (int64_t)report->forced_tets);
   write_making(out, report);
 }
 

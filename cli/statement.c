@@ -86,12 +86,23 @@ static void say_features(const laves_feature_check *f) {
            100 * f->kept_share, f->tolerance, f->corners_kept, f->corners - f->short_corners);
 }
 
+/* Whether what leaves the promised window does so on creases of the input that are sharper, as far as is listed. */
+static bool all_forced(const laves_certificate *c) {
+  for (size_t i = 0; i < c->exception_count; ++i) {
+    const laves_exception *e = &c->exceptions[i];
+    if (e->kind == LAVES_EXCEPTION_OUTSIDE_PROMISED && !(e->crease_angle < c->promised_min_dihedral)) return false;
+  }
+  return c->check.valid;
+}
+
 void statement_say(const laves_certificate *c, bool lists) {
   say_tiles(c);
   if (c->check.has_distance) say_distances(&c->check);
   if (c->has_promise) {
     text_say("  promised %.6g .. %.6g%s: %s", c->promised_min_dihedral, c->promised_max_dihedral, text_degree(),
-             c->promise_holds ? "holds" : "BROKEN");
+             c->promise_holds ? "holds"
+             : all_forced(c)  ? "holds but on creases of the input that are sharper"
+                              : "BROKEN");
   }
   if (c->has_features && !lists) say_features(&c->features);
   say_exceptions(c, lists);

@@ -171,7 +171,10 @@ static laves_result mend_promise(laves__run *r, laves__components *before) {
     if (result != LAVES_OK) return result;
     const size_t broken = laves__count_broken(r->guarantee, &r->layer, r->forced);
     if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
-    if (broken == 0) return LAVES_OK;
+    if (broken == 0) {
+      r->report->forced_tets = laves__count_broken(r->guarantee, &r->layer, NULL);
+      return LAVES_OK;
+    }
     const bool crowd = (double)broken > crowded * (double)r->layer.tet_count;
     const size_t walls = before->count;
     bool *broken_wall = laves__alloc(r->context, walls, sizeof *broken_wall);

@@ -447,6 +447,7 @@ typedef struct laves_report {
   size_t stuffed_vertices;  ///< boundary vertices of the places that were made by stuffing, before improvement
   size_t relaxed_vertices;  ///< those of them that a guarantee above 14.4 degrees moved off the surface
   double relaxed_max;       ///< the furthest such move, units of the input
+  size_t forced_tets;       ///< tets outside the promised window because a crease of the solid is sharper than it is
   // Features that were to be kept (docs/features.md); all zero where there are none.
   double feature_size;       ///< the smallest size at the boundary: shorter creases are roughness
   size_t creases, corners;   ///< of the solid, at this size
