@@ -186,7 +186,7 @@ laves__vec3 laves__crease_point_at(const laves__features *f, int32_t crease, int
     const laves__vec3 a = line[end ? c->count - 1 - i : i], b = line[end ? c->count - 2 - i : i + 1];
     const double length = v3_distance(a, b);
     if (way <= length && length > 0) {
-      laves__vec3 foot = v3_lerp(a, b, way / length), tangent;
+      laves__vec3 foot = v3_lerp(a, b, way / length), tangent = v3_sub(b, a);
       if (f->refine) f->refine(f->self, crease, &foot, &tangent);
       return foot;
     }
