@@ -65,7 +65,10 @@ static laves_result open_file(session *run, const char *path, input *in) {
       progress_clear(&run->bar);
       text_say("wrote %s (%s of defects)", given->defects, text_plural(&places, in->defect_places, "place"));
     }
-    if (written != LAVES_OK && result == LAVES_OK) result = session_fail(run, written, "%s", error.text);
+    if (written != LAVES_OK && result == LAVES_OK)
+      result = session_fail(run, written, "%s", error.text);
+    else if (written != LAVES_OK)
+      text_warning("%s", error.text); /* the refusal itself comes last */
   }
   laves_defects_free(defects);
   return result;
