@@ -40,7 +40,8 @@ static const double rough_admit = 0.4; /* quality: about 26 degrees */
 /* Where that is known beforehand, smoothing leaves those alone, too, that are better than this. */
 static const double brief_admit = 0.6;      /* about 32 degrees */
 static const double block_side = 15;        /* local sizes; see above */
-static const double worthwhile = 0.02;      /* share of bad tets that a pass must cure to be followed by its like */
+static const double worthwhile = 0.02;      /* see the member of `work` */
+static const double worthwhile_again = 0.1; /* the same for what is left once features were let go of, where that is a crowd */
 static const double thorough_below = 0.985; /* quality below which the few that remain get more patience */
 static const double far_outside = 0.75;     /* quality: about 36 to 131 degrees for the standard window */
 static const double wall_admit = 0.8;       /* quality: about 37 to 128 degrees; enough for tets that span a wall */
@@ -87,12 +88,13 @@ typedef struct work {
   size_t spare_count;
   int32_t *spare_vertex; /* [spare_vertex_count] dead vertices that splits may use, shared out likewise; NULL: no splits */
   size_t spare_vertex_count, first_spare_vertex;
-  uint8_t *tries;   /* [tet_count] full treatments so far, at most TRIES_MAX */
-  double *stuck;    /* [tet_count] surroundings in which smoothing ended */
-  double *given_up; /* [tet_count] surroundings in which the last full treatment failed */
-  double admit;     /* tets below this quality are worked on */
-  bool thin;        /* tets that span a wall are good enough at wall_admit */
-  int rounds;       /* of smoothing around a contraction; 0: smoothing only */
+  uint8_t *tries;    /* [tet_count] full treatments so far, at most TRIES_MAX */
+  double *stuck;     /* [tet_count] surroundings in which smoothing ended */
+  double *given_up;  /* [tet_count] surroundings in which the last full treatment failed */
+  double admit;      /* tets below this quality are worked on */
+  double worthwhile; /* share of them that a pass must cure to be followed by its like */
+  bool thin;         /* tets that span a wall are good enough at wall_admit */
+  int rounds;        /* of smoothing around a contraction; 0: smoothing only */
 } work;
 
 static void measure_all(void *user, size_t begin, size_t end, int worker) {
@@ -299,7 +301,7 @@ static laves_result run_passes(work *w, int passes, int patience, laves_error *e
     size_t before = 0;
     const laves_result result = run_pass(w, &before, error);
     if (result != LAVES_OK || before == 0) return result;
-    idle = (double)before > (1 - worthwhile) * (double)best ? idle + 1 : 0;
+    idle = (double)before > (1 - w->worthwhile) * (double)best ? idle + 1 : 0;
     if (before < best) best = before;
   }
   return LAVES_OK;
@@ -428,6 +430,7 @@ static laves_result mend_again(work *w, laves_error *error) {
   w->admit = far_outside;
   laves_result result = run_passes(w, SMOOTH_PASSES, 1, error);
   w->rounds = THOROUGH_ROUNDS;
+  if (is_crowded(w, 0, crease_crowd_min)) w->worthwhile = worthwhile_again;
   if (result == LAVES_OK) result = run_passes(w, CONTRACT_PASSES, 1, error);
   if (result == LAVES_OK) peel_all(w);
   return result;
@@ -450,7 +453,8 @@ static bool short_of_memory(const work *w, int workers) {
 
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {
   laves_context *context = layer->context;
-  work w = {.frame = frame, .measure = laves__measure_of(window), .target = 1, .admit = 1, .layer = layer};
+  work w = {
+      .frame = frame, .measure = laves__measure_of(window), .target = 1, .admit = 1, .worthwhile = worthwhile, .layer = layer};
   leave_out_sharp(&w, window);
   const int workers = laves__workers(context);
   laves_result result = LAVES_OK;
