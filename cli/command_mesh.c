@@ -47,6 +47,7 @@ static laves_options make_options(const settings *given, const laves_sizing *siz
   options.improve = !given->no_improve;
   options.regions = given->regions;
   options.face_sources = given->face_sources;
+  options.streamed = given->stream;
   if (given->window.given) {
     options.min_dihedral = given->window.values[0];
     options.max_dihedral = given->window.values[1];
@@ -217,6 +218,7 @@ static void write_options(json *out, const settings *given, const laves_options 
   json_number(out, "volume_length", options->volume_length);
   json_text(out, "regions", options->regions == LAVES_REGIONS_PARTS ? "parts" : "none");
   json_boolean(out, "face_sources", options->face_sources);
+  json_boolean(out, "streamed", options->streamed);
   sizing_write_json(out, given);
   features_write_json(out, given);
   json_close(out);

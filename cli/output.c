@@ -91,6 +91,11 @@ static laves_result add(session *run, const char *path, bool surface_only, outpu
   if (surface_only && format < LAVES_FORMAT_STL) {
     return session_fail(run, LAVES_ERROR_OPTION, "'--boundary' writes a surface: .stl, .obj, .ply or .off, not '%.200s'", path);
   }
+  if (run->given->stream && !laves_format_streams(format)) {
+    return session_fail(run, LAVES_ERROR_OPTION,
+                        "'%.200s' cannot be streamed: %s files need the mesh in memory; use .vtu or .msh, or leave --stream away",
+                        path, laves_format_name(format));
+  }
   for (int i = 0; i < plan->count; ++i) {
     if (is_same_place(plan->items[i].path, path)) return session_fail(run, LAVES_ERROR_OPTION, "'%.200s' is named twice", path);
   }
@@ -117,6 +122,12 @@ static bool name_certificate(const char *mesh, char *path, size_t size) {
 laves_result outputs_plan_certificate(session *run, const char *source, outputs *plan) {
   const char *asked = run->given->certificate;
   if (plan->count == 0 || (asked && strcmp(asked, "none") == 0)) return LAVES_OK;
+  if (run->given->stream) {
+    if (!asked) return LAVES_OK;
+    return session_fail(run, LAVES_ERROR_OPTION,
+                        "a certificate needs the mesh in memory; leave --certificate away, and say 'laves check --stream' of the "
+                        "file, or leave --stream away");
+  }
   const size_t size = sizeof plan->certificate;
   if (asked ? (size_t)snprintf(plan->certificate, size, "%s", asked) >= size
             : !name_certificate(plan->items[0].path, plan->certificate, size)) {

@@ -48,40 +48,41 @@ laves_result laves__estimate_graded(laves_context *context, const laves_options 
   }
 }
 
-static void count_uniform(double volume, double area, double size, laves_expectation *out) {
+static void count_uniform(const laves_options *options, double volume, double area, double size, laves_expectation *out) {
   const double cells = volume / (cell_side * size * cell_side * size * cell_side * size), places = area / (size * size);
   out->size = size;
   out->tets = LAVES__C15_TETS * cells;
   out->vertices = LAVES__C15_SITES * cells;
-  out->peak_bytes = bytes_at_start + made_per_tet * out->tets + made_per_layer_tet * fmin(out->tets, layer_per_area * places);
+  out->peak_bytes = bytes_at_start + (options->streamed ? 0 : made_per_tet * out->tets) +
+                    made_per_layer_tet * fmin(out->tets, layer_per_area * places);
   out->certify_bytes = bytes_at_start + certified_per_area * places +
                        fmin(certified_per_tet * out->tets, matched_at_most + certified_beyond * out->tets);
 }
 
 /* The least size, to two digits, whose mesh fits into `room`. */
-static double fitting_size(double volume, double area, double size, double room) {
+static double fitting_size(const laves_options *options, double volume, double area, double size, double room) {
   laves_expectation of = {0};
   double low = size, high = size;
   do {
     high *= 2;
-    count_uniform(volume, area, high, &of);
+    count_uniform(options, volume, area, high, &of);
   } while (of.peak_bytes > room && isfinite(high));
   while (high / low > 1.001) {
     const double middle = sqrt(low) * sqrt(high);
-    count_uniform(volume, area, middle, &of);
+    count_uniform(options, volume, area, middle, &of);
     *(of.peak_bytes > room ? &low : &high) = middle;
   }
   const double digit = pow(10, floor(log10(high)) - 1);
   return ceil(high / digit) * digit;
 }
 
-laves_result laves__refuse_uniform(laves_context *context, const laves__oracle *oracle, double volume, double size,
-                                   laves_error *error) {
+laves_result laves__refuse_uniform(laves_context *context, const laves_options *options, const laves__oracle *oracle,
+                                   double volume, double size, laves_error *error) {
   if (laves__may_fit(context, INFINITY)) return LAVES_OK;
   const double area = laves__domain_area(context, oracle), room = laves__room(context);
   laves_expectation of = {0}, fitting = {0};
   if (laves__is_cancelled(context)) return laves__fail_cancelled(error);
-  count_uniform(volume, area, size, &of);
+  count_uniform(options, volume, area, size, &of);
   if (laves__may_fit(context, of.peak_bytes)) return LAVES_OK;
   char what[120], remedy[160] = "raise it";
   static const double countless = 1e15;
@@ -90,7 +91,7 @@ laves_result laves__refuse_uniform(laves_context *context, const laves__oracle *
   else
     snprintf(what, sizeof what, "a mesh of so small a size as %.3g", size);
   if (room > bytes_at_start) {
-    count_uniform(volume, area, fitting_size(volume, area, size, room), &fitting);
+    count_uniform(options, volume, area, fitting_size(options, volume, area, size, room), &fitting);
     snprintf(remedy, sizeof remedy, "raise it, or choose a size of %.2g, which fits (about %.2g tetrahedra)", fitting.size,
              fitting.tets);
   }
@@ -119,7 +120,7 @@ laves_result laves_estimate(laves_context *context, const laves_domain *domain, 
   if (result == LAVES_OK) result = laves__size_create(context, domain, options, e.frame.size, &e.sizes, error);
   if (result == LAVES_OK && laves__size_is_constant(e.sizes)) {
     e.frame.size = laves__size_ceiling(e.sizes);
-    count_uniform(e.volume, laves__domain_area(context, &domain->oracle), e.frame.size, expectation);
+    count_uniform(options, e.volume, laves__domain_area(context, &domain->oracle), e.frame.size, expectation);
     if (laves__is_cancelled(context)) result = laves__fail_cancelled(error);
   } else if (result == LAVES_OK) {
     result = laves__wishes_make(context, e.sizes, e.frame.size, &e.wishes, error);

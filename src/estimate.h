@@ -12,7 +12,7 @@ laves_result laves__estimate_graded(laves_context *context, const laves_options 
 
 /* LAVES_ERROR_MEMORY, with a size that fits, when a mesh of one size cannot be within the context's limit; LAVES_ERROR_CANCELLED.
  */
-laves_result laves__refuse_uniform(laves_context *context, const laves__oracle *oracle, double volume, double size,
-                                   laves_error *error);
+laves_result laves__refuse_uniform(laves_context *context, const laves_options *options, const laves__oracle *oracle,
+                                   double volume, double size, laves_error *error);
 
 #endif

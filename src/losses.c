@@ -22,26 +22,62 @@ static int32_t find_root(int32_t *parent, int32_t v) {
   return v;
 }
 
-bool laves__boundary_topology(const laves_mesh *mesh, size_t *pieces, int64_t *genus) {
-  int32_t *parent = laves__alloc(mesh->context, mesh->vertex_count, sizeof *parent);
-  if (!parent) return false;
-  for (size_t v = 0; v < mesh->vertex_count; v++) parent[v] = -1;
+/* Small numbers for the vertices of the boundary: bits, and how many are set before each word. */
+typedef struct ranks {
+  uint64_t *word;
+  int32_t *before;
+  size_t words;
+  int32_t count;
+} ranks;
+
+static bool make_ranks(const laves_mesh *mesh, ranks *r) {
+  r->words = mesh->vertex_count / 64 + 1;
+  r->word = laves__alloc_zeroed(mesh->context, r->words, sizeof *r->word);
+  r->before = laves__alloc(mesh->context, r->words, sizeof *r->before);
+  if (!r->word || !r->before) return false;
   for (size_t f = 0; f < mesh->face_count; f++)
-    for (int k = 0; k < 3; k++) parent[mesh->faces[f][k]] = mesh->faces[f][k];
-  for (size_t f = 0; f < mesh->face_count; f++)
-    for (int k = 1; k < 3; k++) {
-      const int32_t a = find_root(parent, mesh->faces[f][0]), b = find_root(parent, mesh->faces[f][k]);
-      parent[a > b ? a : b] = a < b ? a : b;
-    }
-  int64_t points = 0, roots = 0;
-  for (size_t v = 0; v < mesh->vertex_count; v++) {
-    points += parent[v] >= 0;
-    roots += parent[v] == (int32_t)v;
+    for (int k = 0; k < 3; k++) r->word[mesh->faces[f][k] / 64] |= UINT64_C(1) << (mesh->faces[f][k] % 64);
+  r->count = 0;
+  for (size_t i = 0; i < r->words; i++) {
+    r->before[i] = r->count;
+    r->count += __builtin_popcountll(r->word[i]);
   }
-  laves__free(mesh->context, parent, mesh->vertex_count, sizeof *parent);
-  *pieces = (size_t)roots;
-  *genus = roots - (points - (int64_t)mesh->face_count / 2) / 2;
   return true;
+}
+
+static int32_t rank_of(const ranks *r, int32_t vertex) {
+  return r->before[vertex / 64] + __builtin_popcountll(r->word[vertex / 64] & ((UINT64_C(1) << (vertex % 64)) - 1));
+}
+
+/* How many pieces the boundary has; `parent` [count] is the forest. */
+static int64_t count_pieces(const laves_mesh *mesh, const ranks *r, int32_t *parent) {
+  for (int32_t v = 0; v < r->count; v++) parent[v] = v;
+  int64_t pieces = r->count;
+  for (size_t f = 0; f < mesh->face_count; f++) {
+    const int32_t first = rank_of(r, mesh->faces[f][0]);
+    for (int k = 1; k < 3; k++) {
+      const int32_t a = find_root(parent, first), b = find_root(parent, rank_of(r, mesh->faces[f][k]));
+      parent[a > b ? a : b] = a < b ? a : b;
+      pieces -= a != b;
+    }
+  }
+  return pieces;
+}
+
+bool laves__boundary_topology(const laves_mesh *mesh, size_t *pieces, int64_t *genus) {
+  ranks r = {0};
+  bool memory = make_ranks(mesh, &r);
+  int32_t *parent = memory ? laves__alloc(mesh->context, (size_t)r.count, sizeof *parent) : NULL;
+  memory = parent != NULL;
+  if (memory) {
+    const int64_t found = count_pieces(mesh, &r, parent);
+    *pieces = (size_t)found;
+    *genus = found - (r.count - (int64_t)mesh->face_count / 2) / 2;
+  }
+  laves__free(mesh->context, parent, (size_t)r.count, sizeof *parent);
+  laves__free(mesh->context, r.before, r.words, sizeof *r.before);
+  laves__free(mesh->context, r.word, r.words, sizeof *r.word);
+  return memory;
 }
 
 /* What may be lost. */
@@ -149,7 +185,8 @@ laves_result laves__find_losses(const laves__frame *frame, const laves_domain *d
   if (!report->topology_known || (report->pieces == report->domain_pieces && report->genus == report->domain_genus))
     return LAVES_OK;
   const size_t pinches = report->lost_count;
-  const laves_result result = name_distant(frame, domain, mesh, report, error);
+  /* the places are looked for in the mesh, which a streamed one does not hold */
+  const laves_result result = mesh->maker.self ? LAVES_OK : name_distant(frame, domain, mesh, report, error);
   if (result == LAVES_OK) say_difference(frame, report, pinches, text, capacity);
   return result;
 }

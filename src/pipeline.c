@@ -38,10 +38,11 @@ static laves_result choose_sizes(laves__run *r) {
     r->frame.size = laves__size_ceiling(r->sizes);
     laves__size_free(r->sizes);
     r->sizes = NULL;
-    result = laves__refuse_uniform(r->context, r->frame.oracle, r->report->volume, r->frame.size, r->error);
-  } else if (result == LAVES_OK && r->options->method == LAVES_METHOD_STUFF) {
+    result = laves__refuse_uniform(r->context, r->options, r->frame.oracle, r->report->volume, r->frame.size, r->error);
+  } else if (result == LAVES_OK && (r->options->method == LAVES_METHOD_STUFF || r->options->streamed)) {
     result = laves__fail(r->error, LAVES_ERROR_OPTION,
-                         "stuffing needs one size everywhere, but sizes that vary were asked for; leave one of the two away");
+                         "%s needs one size everywhere, but sizes that vary were asked for; leave one of the two away",
+                         r->options->streamed ? "streaming" : "stuffing");
   } else if (result == LAVES_OK) {
     r->guarantee = NULL; /* what is proved is proved for one size */
     result = laves__wishes_make(r->context, r->sizes, base, &r->wishes, r->error);
@@ -66,6 +67,9 @@ static laves_result name_groups(const laves__run *r, laves_mesh *mesh) {
 static laves_result find_regions(laves__run *r, laves_mesh *mesh) {
   const bool named = r->domain->oracle.region != NULL;
   if (!named && r->options->regions == LAVES_REGIONS_NONE) return LAVES_OK;
+  if (r->options->streamed)
+    return laves__fail(r->error, LAVES_ERROR_OPTION,
+                       "regions need a mesh in memory, but it was asked to be streamed; leave one of the two away");
   laves__stage_begin(r);
   const laves_result result =
       (named ? laves__regions_of_names : laves__regions_of_parts)(r->context, r->domain, mesh, &r->regions, r->error);
@@ -75,7 +79,7 @@ static laves_result find_regions(laves__run *r, laves_mesh *mesh) {
 
 static laves_result make_mesh(laves__run *r, laves_mesh **mesh) {
   laves__stage_begin(r);
-  laves_result result = laves__assemble(&r->frame, &r->lattice, &r->layer, mesh, r->error);
+  laves_result result = laves__assemble(&r->frame, &r->lattice, &r->layer, r->options->streamed, mesh, r->error);
   if (result == LAVES_OK && (*mesh)->tet_count == 0) result = laves__nothing_resolved(r); /* slivers, all contracted away */
   laves__stage_end(r, "mesh");
   return result;

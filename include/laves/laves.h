@@ -415,7 +415,11 @@ typedef struct laves_options {
   // What the mesh tells of its parts (docs/formats.md).
   bool face_sources;      ///< boundary faces know the nearest face of the input: laves_mesh_face_sources(); default false
   laves_regions regions;  ///< what tetrahedra are told apart by; default LAVES_REGIONS_NONE
-  uint32_t cookie;        ///< set by laves_options_default(), checked by laves_generate()
+  // Meshes larger than memory (docs/streaming.md).
+  bool streamed;  ///< the mesh does not hold its points and tetrahedra, but makes them when they are read:
+                  ///< laves_mesh_read_points(), laves_mesh_read_tets(), laves_mesh_write(). Memory then grows with the surface.
+                  ///< Not with sizes that vary, nor with regions; default false
+  uint32_t cookie;  ///< set by laves_options_default(), checked by laves_generate()
 } laves_options;
 
 LAVES_API laves_options laves_options_default(void);
@@ -522,11 +526,24 @@ LAVES_API laves_result laves_mesh_from_arrays(laves_context *context, const doub
 LAVES_API size_t laves_mesh_vertex_count(const laves_mesh *mesh);
 LAVES_API size_t laves_mesh_tet_count(const laves_mesh *mesh);
 LAVES_API size_t laves_mesh_face_count(const laves_mesh *mesh);         ///< boundary triangles
-LAVES_API const double *laves_mesh_points(const laves_mesh *mesh);      ///< double[vertex_count][3]
-LAVES_API const int32_t *laves_mesh_tets(const laves_mesh *mesh);       ///< int32_t[tet_count][4]
+LAVES_API const double *laves_mesh_points(const laves_mesh *mesh);      ///< double[vertex_count][3]; NULL: streamed
+LAVES_API const int32_t *laves_mesh_tets(const laves_mesh *mesh);       ///< int32_t[tet_count][4]; NULL: streamed
 LAVES_API const int32_t *laves_mesh_faces(const laves_mesh *mesh);      ///< int32_t[face_count][3], outwards
 LAVES_API const int32_t *laves_mesh_regions(const laves_mesh *mesh);    ///< int32_t[tet_count], or NULL: all 1
 LAVES_API const int32_t *laves_mesh_face_tags(const laves_mesh *mesh);  ///< int32_t[face_count], or NULL: all 1
+/// Copies points [first, first + count) of a mesh, and of a streamed one makes them; the same bytes whoever asks, in whatever
+/// order.
+/// @param points  out: double[count][3]
+/// @return LAVES_OK; LAVES_ERROR_OPTION when the range goes beyond the mesh
+/// Thread safety: may be called from many threads at once. Cost: that of a copy; of a streamed mesh about 2 ns for each point.
+LAVES_API laves_result laves_mesh_read_points(const laves_mesh *mesh, size_t first, size_t count, double *points,
+                                              laves_error *error);
+/// The same for tetrahedra: int32_t[count][4]. Ranges of some ten thousand cost least.
+LAVES_API laves_result laves_mesh_read_tets(const laves_mesh *mesh, size_t first, size_t count, int32_t *tets,
+                                            laves_error *error);
+/// Whether the mesh makes its points and tetrahedra when they are read (laves_options.streamed). What needs them all at once,
+/// such as laves_check_mesh(), refuses it with LAVES_ERROR_OPTION.
+LAVES_API bool laves_mesh_is_streamed(const laves_mesh *mesh);
 /// For every boundary triangle the nearest face of the input surface, at the triangle's centroid: faces are counted from 0 as the
 /// input gave them, polygons once; -1: none is near (the triangle closes a hole). int32_t[face_count]; NULL: not asked for
 /// (laves_options.face_sources), or the domain is no surface of triangles. The order in which formats count is in
@@ -895,6 +912,8 @@ LAVES_API const char *laves_format_name(laves_format format);
 LAVES_API laves_format laves_format_from_name(const char *name);
 /// The format that a file name's extension means, or LAVES_FORMAT_COUNT.
 LAVES_API laves_format laves_format_from_path(const char *path);
+/// Whether a streamed mesh (laves_options.streamed) can be written in it: VTU and Gmsh's.
+LAVES_API bool laves_format_streams(laves_format format);
 
 /// Writes a mesh, whole or not at all: a temporary file beside the target is renamed when complete.
 LAVES_API laves_result laves_mesh_write(laves_context *context, const laves_mesh *mesh, const char *path,

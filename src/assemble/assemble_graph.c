@@ -88,9 +88,9 @@ static void stamp_points(void *user, size_t begin, size_t end, int worker) {
     const laves__record *r = &a->lattice->record[i];
     for (uint32_t mask = a->part.mask[i]; mask; mask &= mask - 1) {
       const laves__site s = {(int32_t)i, (uint8_t)__builtin_ctz(mask)};
-      const laves__vec3 p =
-          r->vertex[s.site] >= 0 ? a->part.layer->position[r->vertex[s.site]] : laves__site_place(a->lattice, s);
-      a->mesh->points[laves__kept_vertex(&a->part, s.cell, s.site)] = laves__frame_to_input(a->part.frame, p);
+      a->mesh->points[laves__kept_vertex(&a->part, s.cell, s.site)] =
+          r->vertex[s.site] >= 0 ? a->part.placed[r->vertex[s.site]]
+                                 : laves__frame_to_input(a->part.frame, laves__site_place(a->lattice, s));
     }
   }
 }
@@ -116,26 +116,30 @@ double laves__assemble_graph_volume(const laves__graph *graph) {
   return volume;
 }
 
-laves_result laves__assemble_graph(const laves__frame *frame, const laves__lattice *lattice, const laves__layer *layer,
+laves_result laves__assemble_graph(const laves__frame *frame, laves__lattice *lattice, const laves__layer *layer,
                                    laves_mesh **mesh, laves_error *error) {
   laves_context *context = lattice->context;
   const size_t chunks = laves__chunk_count(lattice);
   assembly a = {.lattice = lattice, .base = laves__alloc(context, chunks, sizeof *a.base)};
   size_t tiles = 0, stamped = 0;
+  int64_t sites = 0;
   laves_result result =
       a.base ? laves__layer_part_make(frame, lattice, layer, &a.part, error) : laves__fail_memory(context, error);
   if (result == LAVES_OK && !laves__parallel_for(context, "mesh", chunks, 16, count_chunks, &a))
     result = laves__fail_cancelled(error);
   if (result == LAVES_OK) {
     sum_chunks(&a, chunks, &tiles, &stamped);
-    result = laves__layer_part_mesh(&a.part, number_records(&a.part), stamped, &a.mesh, error);
+    sites = number_records(&a.part);
+    result = laves__layer_part_mesh(&a.part, sites, stamped, false, &a.mesh, error);
   }
   if (result == LAVES_OK && (!laves__parallel_for(context, "mesh", lattice->record_count, 64, stamp_points, &a) ||
                              !laves__parallel_for(context, "mesh", chunks, 16, stamp_chunks, &a)))
     result = laves__fail_cancelled(error);
   if (result == LAVES_OK) {
     a.mesh->lattice_tet_count = tiles;
-    result = laves__layer_part_write(&a.part, stamped, a.mesh, error);
+    laves__layer_part_tets(&a.part, a.mesh->tets + stamped);
+    laves__layer_part_copies(&a.part, a.mesh->points + sites);
+    result = laves__layer_part_faces(&a.part, a.mesh, error);
   }
   if (result != LAVES_OK) {
     laves_mesh_free(a.mesh);

@@ -11,7 +11,7 @@ void laves__assemble_graph_estimate(const laves__lattice *lattice, const laves__
 /* The volume of the tets that are stamped as they are. */
 double laves__assemble_graph_volume(const laves__graph *graph);
 
-laves_result laves__assemble_graph(const laves__frame *frame, const laves__lattice *lattice, const laves__layer *layer,
+laves_result laves__assemble_graph(const laves__frame *frame, laves__lattice *lattice, const laves__layer *layer,
                                    laves_mesh **mesh, laves_error *error);
 
 #endif

@@ -52,7 +52,35 @@ static void find_faces(void *user, size_t begin, size_t end, int worker) {
   }
 }
 
-laves_result laves__layer_part_make(const laves__frame *frame, const laves__lattice *lattice, const laves__layer *layer,
+/* Vertices that live, in the input's coordinates. */
+static void place_vertices(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const laves__layer_part *part = user;
+  for (size_t v = begin; v < end; v++)
+    if (is_alive(part->layer, (int32_t)v)) part->placed[v] = laves__frame_to_input(part->frame, part->layer->position[v]);
+}
+
+/* Corners stand where the domain says, to the last bit. */
+static void place_corners(const laves__layer_part *part) {
+  const laves__layer *layer = part->layer;
+  for (size_t v = 0; layer->hold && v < layer->vertex_count; v++) {
+    if (layer->depth[v] != 0 || !is_alive(layer, (int32_t)v) || layer->off_surface[v] ||
+        layer->hold[v].kind != LAVES__HOLD_CORNER)
+      continue;
+    const laves__frame *frame = part->frame;
+    part->placed[v] = v3_add(frame->oracle->origin, frame->features->corner[layer->hold[v].id].position);
+  }
+}
+
+/* The vertex of a parted site that has its number, for whoever starts from the site. */
+static void name_parted(const laves__layer_part *part, laves__lattice *lattice) {
+  for (size_t v = 0; v < part->layer->vertex_count; v++) {
+    const uint32_t id = part->layer->origin[v];
+    if (id != LAVES__NO_ORIGIN) lattice->record[id / LAVES__C15_SITES].vertex[id % LAVES__C15_SITES] = (int32_t)v;
+  }
+}
+
+laves_result laves__layer_part_make(const laves__frame *frame, laves__lattice *lattice, const laves__layer *layer,
                                     laves__layer_part *part, laves_error *error) {
   laves_context *context = lattice->context;
   const size_t records = lattice->record_count;
@@ -60,12 +88,16 @@ laves_result laves__layer_part_make(const laves__frame *frame, const laves__latt
   part->mask = laves__alloc(context, records, sizeof *part->mask);
   part->first = laves__alloc(context, records, sizeof *part->first);
   part->id = laves__alloc(context, layer->vertex_count, sizeof *part->id);
+  part->placed = laves__alloc(context, layer->vertex_count, sizeof *part->placed);
   part->faces = laves__alloc(context, layer->tet_count, 1);
-  if (!part->mask || !part->first || !part->id || !part->faces) return laves__fail_memory(context, error);
+  if (!part->mask || !part->first || !part->id || !part->placed || !part->faces) return laves__fail_memory(context, error);
   if (!laves__parallel_for(context, "mesh", records, 64, mask_records, part) ||
-      !laves__parallel_for(context, "mesh", layer->tet_count, 256, find_faces, part))
+      !laves__parallel_for(context, "mesh", layer->tet_count, 256, find_faces, part) ||
+      !laves__parallel_for(context, "mesh", layer->vertex_count, 256, place_vertices, part))
     return laves__fail_cancelled(error);
   unmask_dead_parted(part);
+  place_corners(part);
+  name_parted(part, lattice);
   for (size_t t = 0; t < layer->tet_count; t++) {
     part->tet_count += layer->tet[t][0] >= 0;
     part->face_count += (size_t)__builtin_popcount(part->faces[t]);
@@ -87,57 +119,34 @@ static int64_t number_layer(laves__layer_part *part, int64_t next) {
   return next;
 }
 
-laves_result laves__layer_part_mesh(laves__layer_part *part, int64_t vertices, size_t stamped, laves_mesh **mesh,
+laves_result laves__layer_part_mesh(laves__layer_part *part, int64_t vertices, size_t stamped, bool hollow, laves_mesh **mesh,
                                     laves_error *error) {
   laves_context *context = part->lattice->context;
   if (vertices + (int64_t)part->layer->vertex_count > INT32_MAX)
     return laves__fail(error, LAVES_ERROR_OPTION, "the mesh would have %lld vertices, more than 2^31; choose a larger size",
                        (long long)vertices);
   const int64_t total = number_layer(part, vertices);
-  *mesh = laves__mesh_create(context, (size_t)total, stamped + part->tet_count, part->face_count, false,
-                             part->frame->oracle->tag != NULL);
+  const bool tagged = part->frame->oracle->tag != NULL;
+  *mesh = (hollow ? laves__mesh_create_hollow : laves__mesh_create)(context, (size_t)total, stamped + part->tet_count,
+                                                                    part->face_count, false, tagged);
   if (!*mesh) return laves__fail_memory(context, error);
   if (!part->frame->face_sources || !part->frame->oracle->source) return LAVES_OK;
   (*mesh)->face_sources = laves__alloc(context, part->face_count, sizeof *(*mesh)->face_sources);
   return (*mesh)->face_sources ? LAVES_OK : laves__fail_memory(context, error);
 }
 
-static void write_tets(const laves__layer_part *part, size_t next, laves_mesh *mesh) {
+void laves__layer_part_tets(const laves__layer_part *part, int32_t (*tets)[4]) {
   for (size_t t = 0; t < part->layer->tet_count; t++) {
     const int32_t *tet = part->layer->tet[t];
     if (tet[0] < 0) continue;
-    for (int k = 0; k < 4; k++) mesh->tets[next][k] = part->id[tet[k]];
-    next++;
+    for (int k = 0; k < 4; k++) (*tets)[k] = part->id[tet[k]];
+    tets++;
   }
 }
 
-static void write_copies(const laves__layer_part *part, laves_mesh *mesh) {
-  for (size_t v = 0; v < part->layer->vertex_count; v++) {
-    const uint32_t id = part->layer->origin[v];
-    const bool at_site =
-        id != LAVES__NO_ORIGIN && part->lattice->record[id / LAVES__C15_SITES].vertex[id % LAVES__C15_SITES] >= 0;
-    if (!at_site && part->id[v] >= 0) mesh->points[part->id[v]] = laves__frame_to_input(part->frame, part->layer->position[v]);
-  }
-}
-
-/* Corners stand where the domain says, to the last bit. */
-static void write_corners(const laves__layer_part *part, laves_mesh *mesh) {
-  const laves__layer *layer = part->layer;
-  for (size_t v = 0; layer->hold && v < layer->vertex_count; v++) {
-    if (layer->depth[v] != 0 || part->id[v] < 0 || layer->off_surface[v] || layer->hold[v].kind != LAVES__HOLD_CORNER) continue;
-    const laves__frame *frame = part->frame;
-    mesh->points[part->id[v]] = v3_add(frame->oracle->origin, frame->features->corner[layer->hold[v].id].position);
-  }
-}
-
-static void write_faces(const laves__layer_part *part, laves_mesh *mesh) {
-  size_t next = 0;
-  for (size_t t = 0; t < part->layer->tet_count; t++)
-    for (int k = 0; k < 4; k++) {
-      if (!(part->faces[t] >> k & 1)) continue;
-      for (int j = 0; j < 3; j++) mesh->faces[next][j] = part->id[part->layer->tet[t][laves__tet_face[k][j]]];
-      next++;
-    }
+void laves__layer_part_copies(const laves__layer_part *part, laves__vec3 *points) {
+  for (size_t v = 0; v < part->layer->vertex_count; v++)
+    if (part->layer->origin[v] == LAVES__NO_ORIGIN && part->id[v] >= 0) *points++ = part->placed[v];
 }
 
 typedef struct tagging {
@@ -146,14 +155,25 @@ typedef struct tagging {
   int32_t (*corner)[3]; /* [face_count] the layer's vertices of each face */
 } tagging;
 
+/* The layer's vertices of all boundary faces, outwards. */
+static void list_corners(const laves__layer_part *part, int32_t (*corner)[3]) {
+  for (size_t t = 0; t < part->layer->tet_count; t++)
+    for (int k = 0; k < 4; k++) {
+      if (!(part->faces[t] >> k & 1)) continue;
+      for (int j = 0; j < 3; j++) (*corner)[j] = part->layer->tet[t][laves__tet_face[k][j]];
+      corner++;
+    }
+}
+
 /* The foot of a boundary face: the point of the surface nearest to its centroid. All that a face knows of the surface is
  * what is there. */
 static bool find_foot(const tagging *g, size_t f, laves__vec3 *foot, uint32_t *hint) {
   const laves__frame *frame = g->part->frame;
   const laves__layer *layer = g->part->layer;
   const laves__oracle *oracle = frame->oracle;
-  const int32_t *face = g->mesh->faces[f], *corner = g->corner[f];
-  const laves__vec3 sum = v3_add(v3_add(g->mesh->points[face[0]], g->mesh->points[face[1]]), g->mesh->points[face[2]]);
+  const int32_t *corner = g->corner[f];
+  const laves__vec3 *placed = g->part->placed;
+  const laves__vec3 sum = v3_add(v3_add(placed[corner[0]], placed[corner[1]]), placed[corner[2]]);
   const laves__vec3 centroid = v3_sub(v3_scale(sum, 1.0 / 3), oracle->origin);
   const double reach = 2 * frame->size * laves__layer_scale(layer, corner[0]);
   laves__vec3 normal;
@@ -187,35 +207,24 @@ static void tag_faces(void *user, size_t begin, size_t end, int worker) {
   }
 }
 
-/* Tags, and sources where they were asked for. */
-static laves_result write_tags(const laves__layer_part *part, laves_mesh *mesh, laves_error *error) {
+laves_result laves__layer_part_faces(const laves__layer_part *part, laves_mesh *mesh, laves_error *error) {
   laves_context *context = part->lattice->context;
   tagging g = {part, mesh, laves__alloc(context, mesh->face_count, sizeof *g.corner)};
   if (!g.corner) return laves__fail_memory(context, error);
-  size_t next = 0;
-  for (size_t t = 0; t < part->layer->tet_count; t++)
-    for (int k = 0; k < 4; k++) {
-      if (!(part->faces[t] >> k & 1)) continue;
-      for (int j = 0; j < 3; j++) g.corner[next][j] = part->layer->tet[t][laves__tet_face[k][j]];
-      next++;
-    }
-  const bool done = laves__parallel_for(context, "mesh", mesh->face_count, 64, tag_faces, &g);
+  list_corners(part, g.corner);
+  for (size_t f = 0; f < mesh->face_count; f++)
+    for (int j = 0; j < 3; j++) mesh->faces[f][j] = part->id[g.corner[f][j]];
+  const bool tagged = mesh->face_tags || mesh->face_sources;
+  const bool done = !tagged || laves__parallel_for(context, "mesh", mesh->face_count, 64, tag_faces, &g);
   laves__free(context, g.corner, mesh->face_count, sizeof *g.corner);
   return done ? LAVES_OK : laves__fail_cancelled(error);
 }
 
-laves_result laves__layer_part_write(const laves__layer_part *part, size_t first_tet, laves_mesh *mesh, laves_error *error) {
-  write_tets(part, first_tet, mesh);
-  write_copies(part, mesh);
-  write_corners(part, mesh);
-  write_faces(part, mesh);
-  return mesh->face_tags || mesh->face_sources ? write_tags(part, mesh, error) : LAVES_OK;
-}
-
 void laves__layer_part_free(laves__layer_part *part) {
-  if (!part->lattice) return;
-  laves_context *context = part->lattice->context;
+  if (!part->layer) return;
+  laves_context *context = part->layer->context; /* the lattice may have been handed over */
   laves__free(context, part->faces, part->layer->tet_count, 1);
+  laves__free(context, part->placed, part->layer->vertex_count, sizeof *part->placed);
   laves__free(context, part->id, part->layer->vertex_count, sizeof *part->id);
   laves__free(context, part->first, part->record_count, sizeof *part->first);
   laves__free(context, part->mask, part->record_count, sizeof *part->mask);

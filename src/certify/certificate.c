@@ -172,6 +172,8 @@ static void free_features(feature_part *part) {
 
 laves_result laves_certify(laves_context *context, const laves_mesh *mesh, const laves_certify_options *options,
                            laves_certificate *certificate, laves_error *error) {
+  const laves_result held = laves__mesh_require_arrays(mesh, "a certificate", error);
+  if (held != LAVES_OK) return held;
   const laves_certify_options defaults = laves_certify_options_default();
   if (!options) options = &defaults;
   if (options->cookie != certify_cookie)

@@ -18,6 +18,8 @@ void laves__survey_free(laves__survey *survey) {
 
 laves_result laves__survey_mesh(laves_context *context, const laves_mesh *mesh, const laves_domain *domain, laves_check *check,
                                 laves__survey *survey, laves_error *error) {
+  const laves_result held = laves__mesh_require_arrays(mesh, "a check", error);
+  if (held != LAVES_OK) return held;
   laves__progress_reset(context);
   memset(check, 0, sizeof *check);
   memset(survey, 0, sizeof *survey);

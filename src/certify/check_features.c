@@ -245,6 +245,8 @@ laves_result laves__find_features_for(laves_context *context, const laves_mesh *
 laves_result laves_check_features(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
                                   const laves_feature_options *options, laves_feature_check *check, laves_feature_place *places,
                                   size_t capacity, size_t *count, laves_error *error) {
+  const laves_result held = laves__mesh_require_arrays(mesh, "a check", error);
+  if (held != LAVES_OK) return held;
   const laves_feature_options defaults = laves_feature_options_default();
   laves__boundary boundary = {0};
   laves__features features = {0};

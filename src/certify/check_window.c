@@ -115,6 +115,8 @@ static laves_result describe(laves_context *context, window *w, size_t count, si
 laves_result laves_check_window(laves_context *context, const laves_mesh *mesh, const laves_domain *domain, double min_dihedral,
                                 double max_dihedral, double volume_length, laves_place *places, size_t capacity, size_t *count,
                                 laves_error *error) {
+  const laves_result held = laves__mesh_require_arrays(mesh, "a check", error);
+  if (held != LAVES_OK) return held;
   laves__progress_reset(context);
   *count = 0;
   const double slack = 1e-9; /* of a cosine, far above its rounding and far below anything that matters */

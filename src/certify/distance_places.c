@@ -137,6 +137,8 @@ clean_up:
 
 laves_result laves_check_distance(laves_context *context, const laves_mesh *mesh, const laves_domain *domain, double distance,
                                   laves_place *places, size_t capacity, size_t *count, laves_error *error) {
+  const laves_result held = laves__mesh_require_arrays(mesh, "a distance", error);
+  if (held != LAVES_OK) return held;
   laves__progress_reset(context);
   *count = 0;
   if (!domain) return laves__fail(error, LAVES_ERROR_OPTION, "distances need a domain to measure against");

@@ -12,7 +12,7 @@
 #include "base/sha256.h"
 #include "certify/certify.h"
 
-enum { BLOCK_ITEMS = 1 << 16, PIECE = 512 };
+enum { BLOCK_ITEMS = 1 << 16, PIECE = 1536 };
 
 typedef struct digesting {
   const laves_mesh *mesh;
@@ -26,12 +26,15 @@ static void put_little(unsigned char *bytes, uint64_t value, int count) {
   for (int i = 0; i < count; i++) bytes[i] = (unsigned char)(value >> 8 * i);
 }
 
-static void add_doubles(laves__sha256 *hash, const double *values, size_t count) {
+/* Coordinates [first, first + count) of the mesh. */
+static void add_doubles(laves__sha256 *hash, const laves_mesh *mesh, size_t first, size_t count) {
+  double values[PIECE];
   unsigned char bytes[8 * PIECE];
   for (size_t done = 0; done < count;) {
     const size_t part = count - done < PIECE ? count - done : PIECE;
+    if (!laves__mesh_coordinates(mesh, first + done, first + done + part, values)) return;
     for (size_t i = 0; i < part; i++) {
-      const double value = values[done + i] + 0.0; /* one zero */
+      const double value = values[i] + 0.0; /* one zero */
       uint64_t bits;
       memcpy(&bits, &value, sizeof bits);
       put_little(bytes + 8 * i, bits, 8);
@@ -41,11 +44,13 @@ static void add_doubles(laves__sha256 *hash, const double *values, size_t count)
   }
 }
 
-static void add_integers(laves__sha256 *hash, const int32_t *values, size_t count) {
+static void add_integers(laves__sha256 *hash, const laves_mesh *mesh, size_t first, size_t count) {
+  int32_t values[PIECE];
   unsigned char bytes[4 * PIECE];
   for (size_t done = 0; done < count;) {
     const size_t part = count - done < PIECE ? count - done : PIECE;
-    for (size_t i = 0; i < part; i++) put_little(bytes + 4 * i, (uint32_t)values[done + i], 4);
+    if (!laves__mesh_corners(mesh, first + done, first + done + part, values)) return;
+    for (size_t i = 0; i < part; i++) put_little(bytes + 4 * i, (uint32_t)values[i], 4);
     laves__sha256_add(hash, bytes, 4 * part);
     done += part;
   }
@@ -61,10 +66,10 @@ static void digest_blocks(void *user, size_t begin, size_t end, int worker) {
     laves__sha256_start(&hash);
     if (b < d->point_blocks) {
       const size_t first = b * BLOCK_ITEMS;
-      add_doubles(&hash, &d->mesh->points[first].x, 3 * items_from(first, d->mesh->vertex_count));
+      add_doubles(&hash, d->mesh, 3 * first, 3 * items_from(first, d->mesh->vertex_count));
     } else {
       const size_t first = (b - d->point_blocks) * BLOCK_ITEMS;
-      add_integers(&hash, d->mesh->tets[first], 4 * items_from(first, d->mesh->tet_count));
+      add_integers(&hash, d->mesh, 4 * first, 4 * items_from(first, d->mesh->tet_count));
     }
     laves__sha256_finish(&hash, d->digests[b]);
   }

@@ -182,6 +182,8 @@ static laves_certify_options options_of(const laves_certificate *stated, const l
 laves_result laves_certificate_verify(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
                                       const char *input, const laves_certificate *certificate, laves_difference *differences,
                                       size_t capacity, size_t *count, laves_error *error) {
+  const laves_result held = laves__mesh_require_arrays(mesh, "a certificate", error);
+  if (held != LAVES_OK) return held;
   *count = 0;
   laves_certificate *found = laves__alloc(context, 1, sizeof *found);
   if (!found) return laves__fail_memory(context, error);

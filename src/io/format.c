@@ -28,6 +28,10 @@ laves_format laves_format_from_name(const char *name) {
   return LAVES_FORMAT_COUNT;
 }
 
+bool laves_format_streams(laves_format format) {
+  return format == LAVES_FORMAT_VTU || format == LAVES_FORMAT_GMSH22 || format == LAVES_FORMAT_GMSH41;
+}
+
 laves_format laves_format_from_path(const char *path) {
   const char *dot = path ? strrchr(path, '.') : NULL;
   for (size_t i = 0; dot && i < LAVES__COUNT_OF(extensions); i++)

@@ -7,13 +7,15 @@
  * crash of the machine is not what "whole or not at all" is about.
  *
  * Items are formatted by all threads in waves: every block of a wave has a slot of its own in one scratch block, and the
- * slots are written in order when the wave is done, so the bytes do not depend on the number of threads. */
+ * slots are written in order when the wave is done, so the bytes do not depend on the number of threads. Rows, all of one length,
+ * are written by whoever formatted them, at their places in the file, so that formatting and writing go on at the same time. */
 #define _GNU_SOURCE /* O_TMPFILE; NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp): the C library's name */
 #include "io/output.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -161,13 +163,16 @@ laves_result laves__output_open(laves__output *out, laves_context *context, cons
   return out->error.result;
 }
 
+/* Reports progress; the error is set when that says to cancel. */
+static void ask_cancel(laves__output *out) {
+  const double done_part = out->expected > (double)out->written ? (double)out->written / out->expected : 1;
+  if (laves__cancelled(out->context, phase, out->prepared + (1 - out->prepared) * done_part)) laves__fail_cancelled(&out->error);
+}
+
 static void write_through(laves__output *out, const char *bytes, size_t count) {
   while (count > 0 && out->error.result == LAVES_OK) {
-    const double done_part = out->expected > (double)out->written ? (double)out->written / out->expected : 1;
-    if (laves__cancelled(out->context, phase, out->prepared + (1 - out->prepared) * done_part)) {
-      laves__fail_cancelled(&out->error);
-      return;
-    }
+    ask_cancel(out);
+    if (out->error.result != LAVES_OK) return;
     const ssize_t done = write(out->file, bytes, count < PIECE_BYTES ? count : PIECE_BYTES);
     if (done < 0 && errno == EINTR) continue;
     if (done <= 0) {
@@ -249,6 +254,87 @@ void laves__output_items(laves__output *out, size_t count, size_t item_bytes, la
   }
   laves__free(out->context, w.slots, slots, SLOT_BYTES);
   laves__free(out->context, w.lengths, slots, sizeof *w.lengths);
+}
+
+/* ---- rows ---- */
+
+typedef struct rows {
+  laves__output *out;
+  laves__output_items_fn *fn;
+  const void *user;
+  size_t base, count; /* those being written */
+  size_t row_bytes, per_slot;
+  uint64_t first;   /* where the first of them goes in the file */
+  char *slots;      /* one for each worker */
+  atomic_int fault; /* errno of the first write that failed */
+} rows;
+
+/* Writes all of some bytes at a place of the file; returns 0 or errno. */
+static int write_at(int file, const char *bytes, size_t count, uint64_t place) {
+  while (count > 0) {
+    const ssize_t done = pwrite(file, bytes, count, (off_t)place);
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) return done == 0 ? ENOSPC : errno;
+    bytes += done;
+    count -= (size_t)done;
+    place += (uint64_t)done;
+  }
+  return 0;
+}
+
+static void write_slots(void *user, size_t begin, size_t end, int worker) {
+  rows *r = user;
+  char *slot = r->slots + (size_t)worker * SLOT_BYTES;
+  for (size_t i = begin; i < end && atomic_load(&r->fault) == 0; i++) {
+    const size_t first = i * r->per_slot, last = r->count - first < r->per_slot ? r->count : first + r->per_slot;
+    const size_t bytes = r->fn(r->user, r->base + first, r->base + last, slot);
+    LAVES_ASSERT(bytes == (last - first) * r->row_bytes);
+    const int fault = write_at(r->out->file, slot, bytes, r->first + (uint64_t)first * r->row_bytes);
+    int none = 0;
+    if (fault) atomic_compare_exchange_strong(&r->fault, &none, fault);
+  }
+}
+
+/* Slots between two reports of progress, which also tell whether to cancel. */
+enum { REPORT_SLOTS = 64 };
+
+static void write_rows(rows *r) {
+  laves__output *out = r->out;
+  const size_t count = r->count, report = REPORT_SLOTS * r->per_slot;
+  for (size_t done = 0; done < count && out->error.result == LAVES_OK; done += r->count) {
+    r->count = count - done < report ? count - done : report;
+    r->base = done;
+    ask_cancel(out);
+    if (out->error.result != LAVES_OK) return;
+    if (!laves__parallel_for(out->context, NULL, (r->count + r->per_slot - 1) / r->per_slot, 1, write_slots, r))
+      laves__fail_cancelled(&out->error);
+    errno = atomic_load(&r->fault);
+    if (errno) fail_system(out, "write", out->target);
+    r->first += (uint64_t)r->count * r->row_bytes;
+    out->written += (uint64_t)r->count * r->row_bytes;
+  }
+}
+
+void laves__output_rows(laves__output *out, size_t count, size_t row_bytes, laves__output_items_fn *fn, const void *user) {
+  LAVES_ASSERT(row_bytes > 0 && row_bytes <= SLOT_BYTES);
+  if (out->direct) {
+    laves__output_items(out, count, row_bytes, fn, user);
+    return;
+  }
+  flush(out);
+  const int workers = laves__workers(out->context);
+  rows r = {.out = out, .fn = fn, .user = user, .count = count, .row_bytes = row_bytes, .per_slot = SLOT_BYTES / row_bytes};
+  r.first = out->written;
+  atomic_init(&r.fault, 0);
+  if (out->error.result != LAVES_OK || count == 0) return;
+  r.slots = laves__alloc(out->context, (size_t)workers, SLOT_BYTES);
+  if (!r.slots)
+    laves__output_fail_memory(out);
+  else
+    write_rows(&r);
+  laves__free(out->context, r.slots, (size_t)workers, SLOT_BYTES);
+  if (out->error.result == LAVES_OK && lseek(out->file, (off_t)out->written, SEEK_SET) < 0)
+    fail_system(out, "write", out->target);
 }
 
 laves_result laves__output_complete(laves__output *out) {

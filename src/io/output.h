@@ -39,6 +39,10 @@ typedef size_t laves__output_items_fn(const void *user, size_t begin, size_t end
 /* Formats items 0 .. count-1 in parallel blocks and writes them in order; each takes at most item_bytes. */
 void laves__output_items(laves__output *out, size_t count, size_t item_bytes, laves__output_items_fn *fn, const void *user);
 
+/* The same for items of exactly row_bytes each. Places in the file are known then, so regular files are written by all threads at
+ * once, each its own part. */
+void laves__output_rows(laves__output *out, size_t count, size_t row_bytes, laves__output_items_fn *fn, const void *user);
+
 /* Records a failure found by the writer itself; a printf sentence. */
 void laves__output_fail(laves__output *out, laves_result result, const char *format, ...) __attribute__((format(printf, 3, 4)));
 void laves__output_fail_memory(laves__output *out);

@@ -32,6 +32,18 @@ typedef struct file {
   laves__box3 box;
 } file;
 
+/* Items are had in pieces of so many. */
+enum { PIECE = 512 };
+
+static void find_box(file *f) {
+  laves__vec3 point[PIECE];
+  const size_t count = f->mesh->vertex_count;
+  for (size_t i = 0; i < count; i++) {
+    if (i % PIECE == 0) laves__mesh_points(f->mesh, i, count - i < PIECE ? count : i + PIECE, point);
+    f->box = box3_add(f->box, point[i % PIECE]);
+  }
+}
+
 static bool open_file(file *f, laves__output *out, const laves_mesh *mesh, bool ascii) {
   *f = (file){.out = out, .mesh = mesh, .ascii = ascii, .box = box3_empty()};
   f->sets[0] = (elements){
@@ -50,7 +62,7 @@ static bool open_file(file *f, laves__output *out, const laves_mesh *mesh, bool 
   }
   f->sets[0].group_count = mesh->face_count > 0 ? f->sets[0].order.count : 0;
   f->sets[1].group_count = f->sets[1].order.count;
-  for (size_t i = 0; i < mesh->vertex_count; i++) f->box = box3_add(f->box, mesh->points[i]);
+  find_box(f);
   if (mesh->vertex_count == 0) f->box = (laves__box3){v3(0, 0, 0), v3(0, 0, 0)};
   const double elements_total = (double)mesh->face_count + (double)mesh->tet_count;
   out->expected = 45.0 * (double)mesh->vertex_count + 38.0 * elements_total;
@@ -65,7 +77,24 @@ static int32_t physical_tag(const elements *e, size_t group) {
   return e->order.tags[0] > 0 ? e->order.tags[group] : (int32_t)group + 1;
 }
 
-static const int32_t *corners(const elements *e, size_t i) { return e->dimension == 2 ? e->mesh->faces[i] : e->mesh->tets[i]; }
+/* Corners of some elements in turn. A streamed mesh has one region, and its tets follow each other. */
+typedef struct corner_reader {
+  const elements *elements;
+  size_t first, end; /* the tets in `piece` */
+  int32_t piece[PIECE][4];
+} corner_reader;
+
+static const int32_t *corners(corner_reader *r, size_t i) {
+  const laves_mesh *mesh = r->elements->mesh;
+  if (r->elements->dimension == 2) return mesh->faces[i];
+  if (mesh->tets) return mesh->tets[i];
+  if (i < r->first || i >= r->end) {
+    r->first = i;
+    r->end = mesh->tet_count - i < PIECE ? mesh->tet_count : i + PIECE;
+    laves__mesh_tets(mesh, r->first, r->end, r->piece);
+  }
+  return r->piece[i - r->first];
+}
 
 /* ---- parts that both versions share ---- */
 
@@ -106,8 +135,11 @@ static size_t block_item(const block *b, size_t i) { return laves__tag_order_ite
 static size_t put_points(const void *user, size_t begin, size_t end, char *bytes) {
   const laves_mesh *mesh = user;
   char *text = bytes;
+  laves__vec3 piece[PIECE];
   for (size_t i = begin; i < end; i++) {
-    text = laves__put_point(text, mesh->points[i]);
+    const size_t at = (i - begin) % PIECE;
+    if (at == 0) laves__mesh_points(mesh, i, end - i < PIECE ? end : i + PIECE, piece);
+    text = laves__put_point(text, piece[at]);
     *text++ = '\n';
   }
   return (size_t)(text - bytes);
@@ -116,11 +148,16 @@ static size_t put_points(const void *user, size_t begin, size_t end, char *bytes
 /* ---- version 2.2 ---- */
 
 static size_t put_nodes22(const void *user, size_t begin, size_t end, char *bytes) {
+  const laves_mesh *mesh = user;
   char *text = bytes;
+  laves__vec3 piece[PIECE];
   for (size_t i = begin; i < end; i++) {
+    const size_t at = (i - begin) % PIECE;
+    if (at == 0) laves__mesh_points(mesh, i, end - i < PIECE ? end : i + PIECE, piece);
     text = laves__put_integer(text, (int64_t)i + 1);
     *text++ = ' ';
-    text += put_points(user, i, i + 1, text);
+    text = laves__put_point(text, piece[at]);
+    *text++ = '\n';
   }
   return (size_t)(text - bytes);
 }
@@ -129,10 +166,13 @@ enum { NODE22_BYTES = 28 };
 
 static size_t pack_nodes22(const void *user, size_t begin, size_t end, char *bytes) {
   const laves_mesh *mesh = user;
+  laves__vec3 piece[PIECE];
   for (size_t i = begin; i < end; i++, bytes += NODE22_BYTES) {
+    const size_t at = (i - begin) % PIECE;
+    if (at == 0) laves__mesh_points(mesh, i, end - i < PIECE ? end : i + PIECE, piece);
     const int32_t number = (int32_t)(i + 1);
     memcpy(bytes, &number, 4);
-    memcpy(bytes + 4, &mesh->points[i], 24);
+    memcpy(bytes + 4, &piece[at], 24);
   }
   return (end - begin) * NODE22_BYTES;
 }
@@ -141,13 +181,14 @@ static size_t pack_nodes22(const void *user, size_t begin, size_t end, char *byt
 static size_t put_elements22(const void *user, size_t begin, size_t end, char *bytes) {
   const block *b = user;
   const elements *e = b->elements;
+  corner_reader reader = {.elements = e};
   char *text = bytes;
   for (size_t i = begin; i < end; i++) {
     const size_t item = block_item(b, i);
     const int32_t head[] = {(int32_t)(e->first_number + item), e->type, 2, physical_tag(e, b->group), (int32_t)b->group + 1};
     text = laves__put_indices(text, head, 5, 0);
     *text++ = ' ';
-    text = laves__put_indices(text, corners(e, item), e->corner_count, 1);
+    text = laves__put_indices(text, corners(&reader, item), e->corner_count, 1);
     *text++ = '\n';
   }
   return (size_t)(text - bytes);
@@ -156,11 +197,13 @@ static size_t put_elements22(const void *user, size_t begin, size_t end, char *b
 static size_t pack_elements22(const void *user, size_t begin, size_t end, char *bytes) {
   const block *b = user;
   const elements *e = b->elements;
+  corner_reader reader = {.elements = e};
   const size_t size = (size_t)(3 + e->corner_count) * 4;
   for (size_t i = begin; i < end; i++, bytes += size) {
     const size_t item = block_item(b, i);
+    const int32_t *corner = corners(&reader, item);
     int32_t row[7] = {(int32_t)(e->first_number + item), physical_tag(e, b->group), (int32_t)b->group + 1};
-    for (int j = 0; j < e->corner_count; j++) row[3 + j] = corners(e, item)[j] + 1;
+    for (int j = 0; j < e->corner_count; j++) row[3 + j] = corner[j] + 1;
     memcpy(bytes, row, size);
   }
   return (end - begin) * size;
@@ -174,7 +217,7 @@ static void write_block22(file *f, const block *b) {
   write_int(f, b->elements->type);
   write_int(f, (int32_t)b->count);
   write_int(f, 2);
-  laves__output_items(f->out, b->count, (size_t)(3 + b->elements->corner_count) * 4, pack_elements22, b);
+  laves__output_rows(f->out, b->count, (size_t)(3 + b->elements->corner_count) * 4, pack_elements22, b);
 }
 
 void laves__write_gmsh22(laves__output *out, const laves_mesh *mesh, bool ascii) {
@@ -190,7 +233,7 @@ void laves__write_gmsh22(laves__output *out, const laves_mesh *mesh, bool ascii)
   if (ascii)
     laves__output_items(out, mesh->vertex_count, LAVES__POINT_TEXT_MAX + LAVES__INTEGER_TEXT_MAX + 2, put_nodes22, mesh);
   else
-    laves__output_items(out, mesh->vertex_count, NODE22_BYTES, pack_nodes22, mesh);
+    laves__output_rows(out, mesh->vertex_count, NODE22_BYTES, pack_nodes22, mesh);
   laves__output_printf(out, "%s$EndNodes\n$Elements\n%zu\n", ascii ? "" : "\n", element_count);
   for (int d = 0; d < 2; d++)
     for (size_t i = 0; i < f.sets[d].group_count && f.sets[d].count > 0; i++) {
@@ -269,6 +312,11 @@ static size_t pack_numbers(const void *user, size_t begin, size_t end, char *byt
   return (end - begin) * 8;
 }
 
+static size_t pack_points(const void *user, size_t begin, size_t end, char *bytes) {
+  laves__mesh_points(user, begin, end, (laves__vec3 *)(void *)bytes);
+  return (end - begin) * sizeof(laves__vec3);
+}
+
 /* All nodes belong to the first volume. */
 static void write_nodes41(file *f) {
   const size_t count = f->mesh->vertex_count;
@@ -276,11 +324,14 @@ static void write_nodes41(file *f) {
   write_fields(f, "ssss;", (uint64_t[]){count > 0, count, count > 0, count});
   if (count > 0) {
     write_fields(f, "iiis;", (uint64_t[]){3, 1, 0, count});
-    laves__output_items(f->out, count, LAVES__INTEGER_TEXT_MAX + 1, f->ascii ? put_numbers : pack_numbers, NULL);
+    if (f->ascii)
+      laves__output_items(f->out, count, LAVES__INTEGER_TEXT_MAX + 1, put_numbers, NULL);
+    else
+      laves__output_rows(f->out, count, sizeof(uint64_t), pack_numbers, NULL);
     if (f->ascii)
       laves__output_items(f->out, count, LAVES__POINT_TEXT_MAX + 1, put_points, f->mesh);
     else
-      laves__output_bytes(f->out, f->mesh->points, count * sizeof *f->mesh->points);
+      laves__output_rows(f->out, count, sizeof(laves__vec3), pack_points, f->mesh);
   }
   laves__output_printf(f->out, "%s$EndNodes\n", f->ascii ? "" : "\n");
 }
@@ -288,12 +339,13 @@ static void write_nodes41(file *f) {
 static size_t put_elements41(const void *user, size_t begin, size_t end, char *bytes) {
   const block *b = user;
   const elements *e = b->elements;
+  corner_reader reader = {.elements = e};
   char *text = bytes;
   for (size_t i = begin; i < end; i++) {
     const size_t item = block_item(b, i);
     text = laves__put_integer(text, (int64_t)(e->first_number + item));
     *text++ = ' ';
-    text = laves__put_indices(text, corners(e, item), e->corner_count, 1);
+    text = laves__put_indices(text, corners(&reader, item), e->corner_count, 1);
     *text++ = '\n';
   }
   return (size_t)(text - bytes);
@@ -302,11 +354,13 @@ static size_t put_elements41(const void *user, size_t begin, size_t end, char *b
 static size_t pack_elements41(const void *user, size_t begin, size_t end, char *bytes) {
   const block *b = user;
   const elements *e = b->elements;
+  corner_reader reader = {.elements = e};
   const size_t size = (size_t)(1 + e->corner_count) * 8;
   for (size_t i = begin; i < end; i++, bytes += size) {
     const size_t item = block_item(b, i);
+    const int32_t *corner = corners(&reader, item);
     uint64_t row[5] = {e->first_number + item};
-    for (int j = 0; j < e->corner_count; j++) row[1 + j] = (uint64_t)corners(e, item)[j] + 1;
+    for (int j = 0; j < e->corner_count; j++) row[1 + j] = (uint64_t)corner[j] + 1;
     memcpy(bytes, row, size);
   }
   return (end - begin) * size;
@@ -323,8 +377,10 @@ static void write_elements41(file *f) {
       const elements *e = &f->sets[d];
       const block b = get_block(e, i);
       write_fields(f, "iiis;", (uint64_t[]){(uint64_t)e->dimension, i + 1, (uint64_t)e->type, b.count});
-      const size_t text_max = 5 * (LAVES__INTEGER_TEXT_MAX + 1), binary_max = (size_t)(1 + e->corner_count) * 8;
-      laves__output_items(f->out, b.count, f->ascii ? text_max : binary_max, f->ascii ? put_elements41 : pack_elements41, &b);
+      if (f->ascii)
+        laves__output_items(f->out, b.count, 5 * (LAVES__INTEGER_TEXT_MAX + 1), put_elements41, &b);
+      else
+        laves__output_rows(f->out, b.count, (size_t)(1 + e->corner_count) * 8, pack_elements41, &b);
     }
   laves__output_printf(f->out, "%s$EndElements\n", f->ascii ? "" : "\n");
 }

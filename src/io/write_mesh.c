@@ -108,6 +108,8 @@ laves_result laves_mesh_write(laves_context *context, const laves_mesh *mesh, co
                        "the name '%s' does not say in which format to write; end it in .vtu, .msh, .mesh, .meshb, .node, .stl, "
                        ".obj, .ply or .off, or name a format",
                        path);
+  const laves_result held = laves_format_streams(format) ? LAVES_OK : laves__mesh_require_arrays(mesh, "this format", error);
+  if (held != LAVES_OK) return held;
   laves__progress_reset(context);
   if (format == LAVES_FORMAT_TETGEN) return write_tetgen(context, mesh, path, error);
   return write_one(context, mesh, path, format, options, error);

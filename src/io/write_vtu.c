@@ -28,13 +28,6 @@ typedef struct grid {
 
 /* ---- arrays, item by item; an item is one number, for points one coordinate ---- */
 
-static double coordinate(const grid *g, size_t i) { return v3_at(g->mesh->points[i / 3], (int)(i % 3)); }
-
-static int64_t corner(const grid *g, size_t i) {
-  const size_t tet_corners = 4 * g->mesh->tet_count;
-  return i < tet_corners ? g->mesh->tets[i / 4][i % 4] : g->mesh->faces[(i - tet_corners) / 3][(i - tet_corners) % 3];
-}
-
 static int64_t offset(const grid *g, size_t i) {
   const size_t tets = g->mesh->tet_count;
   return i < tets ? 4 * ((int64_t)i + 1) : 4 * (int64_t)tets + 3 * ((int64_t)(i - tets) + 1);
@@ -68,7 +61,7 @@ typedef struct array {
   kind kind;
   int components;
   size_t count;
-  int64_t (*integer)(const grid *g, size_t i); /* NULL: coordinates */
+  int64_t (*integer)(const grid *g, size_t i); /* NULL: coordinates, or corners */
   /* Compressed form; unused otherwise. */
   size_t block_count;
   uint64_t *header;
@@ -81,7 +74,7 @@ static void describe_arrays(const grid *g, array arrays[ARRAY_COUNT]) {
   const size_t corners = 4 * g->mesh->tet_count + 3 * g->faces;
   const kind offset_kind = corners <= INT32_MAX ? INT32 : INT64;
   arrays[POINTS] = (array){g, "Points", FLOAT64, 3, 3 * g->mesh->vertex_count, NULL, 0, NULL, NULL};
-  arrays[CONNECTIVITY] = (array){g, "connectivity", INT32, 1, corners, corner, 0, NULL, NULL};
+  arrays[CONNECTIVITY] = (array){g, "connectivity", INT32, 1, corners, NULL, 0, NULL, NULL};
   arrays[OFFSETS] = (array){g, "offsets", offset_kind, 1, g->cells, offset, 0, NULL, NULL};
   arrays[TYPES] = (array){g, "types", UINT8, 1, g->cells, type, 0, NULL, NULL};
   arrays[REGION] = (array){g, "region", INT32, 1, g->cells, region, 0, NULL, NULL};
@@ -105,14 +98,34 @@ static inline __attribute__((always_inline)) void pack_integers(const grid *g, s
   }
 }
 
+/* Corners of tets, then of triangles. */
+static void pack_corners(const grid *g, size_t begin, size_t end, int32_t *out) {
+  const size_t tet_corners = 4 * g->mesh->tet_count;
+  if (begin < tet_corners) {
+    const size_t last = end < tet_corners ? end : tet_corners;
+    const bool made = laves__mesh_corners(g->mesh, begin, last, out);
+    LAVES_ASSERT(made);
+    (void)made;
+    out += last - begin;
+    begin = last;
+  }
+  if (end > begin) memcpy(out, *g->mesh->faces + (begin - tet_corners), (end - begin) * sizeof *out);
+}
+
+static void pack_coordinates(const grid *g, size_t begin, size_t end, double *out) {
+  const bool made = laves__mesh_coordinates(g->mesh, begin, end, out);
+  LAVES_ASSERT(made);
+  (void)made;
+}
+
 static size_t pack(const void *user, size_t begin, size_t end, char *bytes) {
   const array *a = user;
   const grid *g = a->grid;
   const size_t size = kind_bytes[a->kind];
   if (a->kind == FLOAT64)
-    memcpy(bytes, &g->mesh->points[0].x + begin, (end - begin) * size);
-  else if (a->integer == corner)
-    pack_integers(g, begin, end, bytes, sizeof(int32_t), corner);
+    pack_coordinates(g, begin, end, (double *)(void *)bytes);
+  else if (!a->integer)
+    pack_corners(g, begin, end, (int32_t *)(void *)bytes);
   else if (a->integer == offset && a->kind == INT32)
     pack_integers(g, begin, end, bytes, sizeof(int32_t), offset);
   else if (a->integer == offset)
@@ -128,38 +141,10 @@ static size_t pack(const void *user, size_t begin, size_t end, char *bytes) {
   return (end - begin) * size;
 }
 
-/* The part of an array that stands in memory as the file wants it: [0, *count) items. */
-static const void *in_memory(const array *a, size_t *count) {
-  const laves_mesh *mesh = a->grid->mesh;
-  if (a->kind == FLOAT64) {
-    *count = a->count;
-    return mesh->points;
-  }
-  if (a->integer == corner) {
-    *count = 4 * mesh->tet_count;
-    return mesh->tets;
-  }
-  *count = 0;
-  return NULL;
-}
-
-typedef struct rest {
-  const array *array;
-  size_t first;
-} rest;
-
-static size_t pack_rest(const void *user, size_t begin, size_t end, char *bytes) {
-  const rest *r = user;
-  return pack(r->array, r->first + begin, r->first + end, bytes);
-}
-
 static void write_raw(laves__output *out, const array *a) {
   const uint64_t bytes = raw_bytes(a);
   laves__output_bytes(out, &bytes, sizeof bytes);
-  rest r = {a, 0};
-  const void *ready = in_memory(a, &r.first);
-  laves__output_bytes(out, ready, r.first * kind_bytes[a->kind]);
-  laves__output_items(out, a->count - r.first, kind_bytes[a->kind], pack_rest, &r);
+  laves__output_rows(out, a->count, kind_bytes[a->kind], pack, a);
 }
 
 /* ---- compressed ---- */
@@ -252,11 +237,17 @@ static void free_compressed(laves_context *context, array *a) {
 
 /* ---- text ---- */
 
+/* Numbers are had in pieces of so many. */
+enum { PIECE = 512 };
+
 static size_t put_coordinates(const void *user, size_t begin, size_t end, char *bytes) {
   const array *a = user;
   char *text = bytes;
+  double piece[PIECE];
   for (size_t i = begin; i < end; i++) {
-    text = laves__put_double(text, coordinate(a->grid, i));
+    const size_t at = (i - begin) % PIECE;
+    if (at == 0) pack_coordinates(a->grid, i, end - i < PIECE ? end : i + PIECE, piece);
+    text = laves__put_double(text, piece[at]);
     *text++ = i % 3 == 2 ? '\n' : ' ';
   }
   return (size_t)(text - bytes);
@@ -265,8 +256,11 @@ static size_t put_coordinates(const void *user, size_t begin, size_t end, char *
 static size_t put_integers(const void *user, size_t begin, size_t end, char *bytes) {
   const array *a = user;
   char *text = bytes;
+  int32_t piece[PIECE];
   for (size_t i = begin; i < end; i++) {
-    text = laves__put_integer(text, a->integer(a->grid, i));
+    const size_t at = (i - begin) % PIECE;
+    if (at == 0 && !a->integer) pack_corners(a->grid, i, end - i < PIECE ? end : i + PIECE, piece);
+    text = laves__put_integer(text, a->integer ? a->integer(a->grid, i) : piece[at]);
     *text++ = i % 12 == 11 ? '\n' : ' ';
   }
   return (size_t)(text - bytes);

@@ -69,37 +69,53 @@ void laves__hash_text(laves__hash128 hash, char text[33]) {
 
 /* ---- a whole mesh ---- */
 
-typedef struct batch {
-  const unsigned char *bytes;
-  size_t byte_count, element;
-  laves__hash128 hashes[BATCH_BLOCKS];
-} batch;
-
-static void hash_blocks(void *user, size_t begin, size_t end, int worker) {
-  batch *b = user;
-  (void)worker;
-  for (size_t i = begin; i < end; i++) {
-    const size_t from = i * BLOCK_BYTES;
-    const size_t size = b->byte_count - from < BLOCK_BYTES ? b->byte_count - from : BLOCK_BYTES;
-    b->hashes[i] = laves__hash_bytes(b->bytes + from, size, b->element, (laves__hash128){0, 0});
-  }
-}
-
 /* Kinds of arrays, as they stand in the headers. */
 enum { POINTS = 1, TETS, FACES, REGIONS, FACE_TAGS };
 
-/* `data` NULL: the array is absent, which differs from an empty one. */
-static laves__hash128 fold_array(laves_context *context, uint64_t kind, const void *data, size_t count, size_t element,
-                                 laves__hash128 hash) {
-  const uint64_t header[2] = {kind, data ? count : UINT64_MAX};
+/* An array in memory, or the points or tets of a mesh that makes them. */
+typedef struct array {
+  const unsigned char *bytes; /* NULL: made */
+  const laves_mesh *mesh;
+  uint64_t kind;
+  size_t count, element; /* how many, and bytes of each */
+} array;
+
+typedef struct batch {
+  const array *array;
+  size_t first, end; /* bytes */
+  laves__hash128 hashes[BATCH_BLOCKS];
+} batch;
+
+static laves__hash128 hash_made(const array *a, size_t from, size_t size) {
+  double room[BLOCK_BYTES / sizeof(double)];
+  const size_t begin = from / a->element, end = begin + size / a->element;
+  const bool made = a->kind == POINTS ? laves__mesh_coordinates(a->mesh, begin, end, room)
+                                      : laves__mesh_corners(a->mesh, begin, end, (int32_t *)(void *)room);
+  return laves__hash_bytes(room, made ? size : 0, a->element, (laves__hash128){0, 0});
+}
+
+static void hash_blocks(void *user, size_t begin, size_t end, int worker) {
+  batch *b = user;
+  const array *a = b->array;
+  (void)worker;
+  for (size_t i = begin; i < end; i++) {
+    const size_t from = b->first + i * BLOCK_BYTES;
+    const size_t size = b->end - from < BLOCK_BYTES ? b->end - from : BLOCK_BYTES;
+    b->hashes[i] =
+        a->bytes ? laves__hash_bytes(a->bytes + from, size, a->element, (laves__hash128){0, 0}) : hash_made(a, from, size);
+  }
+}
+
+/* An array that is absent differs from an empty one. */
+static laves__hash128 fold_array(laves_context *context, const array *a, laves__hash128 hash) {
+  const bool made = !a->bytes && a->mesh && a->mesh->maker.self;
+  const uint64_t header[2] = {a->kind, a->bytes || made ? a->count : UINT64_MAX};
   hash = laves__hash_bytes(header, sizeof header, sizeof header[0], hash);
-  batch b = {.element = element};
-  size_t left = data ? count * element : 0;
-  for (const unsigned char *next = data; left > 0; next += b.byte_count, left -= b.byte_count) {
-    const size_t batch_bytes = (size_t)BATCH_BLOCKS * BLOCK_BYTES;
-    b.bytes = next;
-    b.byte_count = left < batch_bytes ? left : batch_bytes;
-    const size_t blocks = (b.byte_count + BLOCK_BYTES - 1) / BLOCK_BYTES;
+  const size_t bytes = a->bytes || made ? a->count * a->element : 0, batch_bytes = (size_t)BATCH_BLOCKS * BLOCK_BYTES;
+  batch b = {.array = a};
+  for (; b.first < bytes; b.first = b.end) {
+    b.end = bytes - b.first < batch_bytes ? bytes : b.first + batch_bytes;
+    const size_t blocks = (b.end - b.first + BLOCK_BYTES - 1) / BLOCK_BYTES;
     laves__parallel_for(context, NULL, blocks, 1, hash_blocks, &b);
     for (size_t i = 0; i < blocks; i++) hash = laves__hash_bytes(&b.hashes[i], sizeof b.hashes[i], sizeof(uint64_t), hash);
   }
@@ -109,11 +125,12 @@ static laves__hash128 fold_array(laves_context *context, uint64_t kind, const vo
 void laves_mesh_hash(const laves_mesh *mesh, char hash[33]) {
   laves_context *context = mesh->context;
   laves__progress_reset(context); /* an old cancel must not leave blocks out */
+  const array arrays[] = {{(void *)mesh->points, mesh, POINTS, 3 * mesh->vertex_count, sizeof(double)},
+                          {(void *)mesh->tets, mesh, TETS, 4 * mesh->tet_count, sizeof(int32_t)},
+                          {(void *)mesh->faces, NULL, FACES, 3 * mesh->face_count, sizeof(int32_t)},
+                          {(void *)mesh->regions, NULL, REGIONS, mesh->tet_count, sizeof(int32_t)},
+                          {(void *)mesh->face_tags, NULL, FACE_TAGS, mesh->face_count, sizeof(int32_t)}};
   laves__hash128 h = {0, 0};
-  h = fold_array(context, POINTS, mesh->points, 3 * mesh->vertex_count, sizeof(double), h);
-  h = fold_array(context, TETS, mesh->tets, 4 * mesh->tet_count, sizeof(int32_t), h);
-  h = fold_array(context, FACES, mesh->faces, 3 * mesh->face_count, sizeof(int32_t), h);
-  h = fold_array(context, REGIONS, mesh->regions, mesh->tet_count, sizeof(int32_t), h);
-  h = fold_array(context, FACE_TAGS, mesh->face_tags, mesh->face_count, sizeof(int32_t), h);
+  for (size_t i = 0; i < LAVES__COUNT_OF(arrays); i++) h = fold_array(context, &arrays[i], h);
   laves__hash_text(h, hash);
 }

@@ -15,11 +15,13 @@ const char *const faulty_call_names[FAULTY_CALL_COUNT] = {"open", "write", "clos
 
 int __real_open(const char *path, int flags, ...);
 ssize_t __real_write(int file, const void *bytes, size_t count);
+ssize_t __real_pwrite(int file, const void *bytes, size_t count, off_t place);
 int __real_close(int file);
 int __real_rename(const char *from, const char *to);
 int __real_link(const char *from, const char *to);
 int __wrap_open(const char *path, int flags, ...);
 ssize_t __wrap_write(int file, const void *bytes, size_t count);
+ssize_t __wrap_pwrite(int file, const void *bytes, size_t count, off_t place);
 int __wrap_close(int file);
 int __wrap_rename(const char *from, const char *to);
 int __wrap_link(const char *from, const char *to);
@@ -41,7 +43,8 @@ int __wrap_open(const char *path, int flags, ...) {
   return __real_open(path, flags, mode);
 }
 
-ssize_t __wrap_write(int file, const void *bytes, size_t count) {
+/* How many of `count` bytes a write may take: -1: it fails. */
+static ssize_t room_for_write(size_t count) {
   enum { DRIBBLE = 5 };
   if (fails(FAULTY_WRITE)) return -1;
   if (faulty.dribbles && faulty.calls[FAULTY_WRITE] % 2) {
@@ -53,9 +56,22 @@ ssize_t __wrap_write(int file, const void *bytes, size_t count) {
     errno = ENOSPC;
     return -1;
   }
-  const ssize_t done = __real_write(file, bytes, count < faulty.room ? count : faulty.room);
+  return (ssize_t)(count < faulty.room ? count : faulty.room);
+}
+
+static ssize_t fill_room(ssize_t done) {
   if (faulty.room != SIZE_MAX && done > 0) faulty.room -= (size_t)done;
   return done;
+}
+
+ssize_t __wrap_write(int file, const void *bytes, size_t count) {
+  const ssize_t part = room_for_write(count);
+  return part < 0 ? -1 : fill_room(__real_write(file, bytes, (size_t)part));
+}
+
+ssize_t __wrap_pwrite(int file, const void *bytes, size_t count, off_t place) {
+  const ssize_t part = room_for_write(count);
+  return part < 0 ? -1 : fill_room(__real_pwrite(file, bytes, (size_t)part, place));
 }
 
 /* A close that fails has closed the file all the same, as Linux does. */

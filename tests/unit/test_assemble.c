@@ -14,7 +14,7 @@ static laves_mesh *assemble(stages *s, const char *expression, double size) {
   laves_error error;
   stages_begin(s, expression, size, 0);
   stages_snap(s);
-  assert_int_equal(laves__assemble(&s->frame, &s->lattice, &s->layer, &mesh, &error), LAVES_OK);
+  assert_int_equal(laves__assemble(&s->frame, &s->lattice, &s->layer, false, &mesh, &error), LAVES_OK);
   return mesh;
 }
 
@@ -97,7 +97,7 @@ static void every_number_of_threads_gives_the_same_bytes(void **state) {
     laves_mesh *mesh;
     stages_begin(&s, "torus(1, 0.4) - box(0.5)", 0.08, threads[i]);
     stages_snap(&s);
-    assert_int_equal(laves__assemble(&s.frame, &s.lattice, &s.layer, &mesh, NULL), LAVES_OK);
+    assert_int_equal(laves__assemble(&s.frame, &s.lattice, &s.layer, false, &mesh, NULL), LAVES_OK);
     laves_mesh_hash(mesh, hash[i]);
     laves_mesh_free(mesh);
     stages_end(&s);

@@ -35,7 +35,7 @@ static void must(laves_result result, const laves_error *error) {
 static laves_mesh *assemble(stages *s) {
   laves_mesh *mesh;
   laves_error error;
-  must(laves__assemble(&s->frame, &s->lattice, &s->layer, &mesh, &error), &error);
+  must(laves__assemble(&s->frame, &s->lattice, &s->layer, false, &mesh, &error), &error);
   return mesh;
 }
 
@@ -280,7 +280,7 @@ static laves_result run_limited(size_t limit, size_t *before, size_t *peak) {
   laves_result result = laves__lattice_of_graph(s.context, &graph, &s.lattice, &error);
   if (result == LAVES_OK) result = laves__classify(&s.frame, &s.lattice, &error);
   if (result == LAVES_OK) result = laves__snap(&s.frame, true, &s.lattice, &s.layer, &counts, &error);
-  if (result == LAVES_OK) result = laves__assemble(&s.frame, &s.lattice, &s.layer, &mesh, &error);
+  if (result == LAVES_OK) result = laves__assemble(&s.frame, &s.lattice, &s.layer, false, &mesh, &error);
   *peak = laves_context_peak_bytes(s.context);
   laves_mesh_free(mesh);
   laves__graph_free(&graph);

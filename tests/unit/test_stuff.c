@@ -117,7 +117,7 @@ static void zones_join(void **state) {
     laves__layer_free(&s.layer);
     assert_int_equal(laves__stuff(&s.frame, &laves__guarantees[0], &s.lattice, &s.layer, &counts, &error), LAVES_OK);
     assert_true(counts.vertices > 0);
-    assert_int_equal(laves__assemble(&s.frame, &s.lattice, &s.layer, &mesh, &error), LAVES_OK);
+    assert_int_equal(laves__assemble(&s.frame, &s.lattice, &s.layer, false, &mesh, &error), LAVES_OK);
     const laves_check check = check_valid(s.context, mesh, solids[i]);
     assert_int_equal(check.components, 1);
     assert_int_equal(check.genus, i == 1);
