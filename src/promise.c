@@ -77,8 +77,15 @@ static const double held_slack = 0.005;
 /* Where more than this share of the layer breaks the promise, small repairs are not tried. */
 static const double crowded = 0.001;
 
+/* What improvement is for. */
+typedef enum purpose {
+  ALL_OF_IT, /* the first time */
+  AGAIN,     /* after features were let go of */
+  RESCUE,    /* only what is outside the promised window */
+} purpose;
+
 /* Improvement aims a little inside the asked window, so that the last digits of its iterations do not matter. */
-static laves_result improve(laves__run *r, bool again) {
+static laves_result improve(laves__run *r, purpose why) {
   if (!r->options->improve) return LAVES_OK;
   laves__stage_begin(r);
   const bool held = r->guarantee && laves__count_broken(r->guarantee, &r->layer, NULL) == 0;
@@ -87,7 +94,9 @@ static laves_result improve(laves__run *r, bool again) {
                              .volume_length = r->options->volume_length > 0 ? r->options->volume_length + 0.05 : 0,
                              .held_min = held ? r->guarantee->min_dihedral + held_slack : 0,
                              .held_max = held ? r->guarantee->max_dihedral - held_slack : 180,
-                             .again = again,
+                             .again = why == AGAIN,
+                             .rescue_min = why == RESCUE ? r->guarantee->min_dihedral : 0,
+                             .rescue_max = why == RESCUE ? r->guarantee->max_dihedral : 180,
                              .brief = r->rough};
   const laves_result result =
       laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : laves__improve(&r->frame, &aim, &r->layer, r->error);
@@ -103,13 +112,13 @@ static laves_result release_features(laves__run *r) {
     const size_t released = laves__release_features(&r->frame, &feature_window, what, &r->layer);
     if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
     r->released += released;
-    if (released > 0) result = improve(r, true);
+    if (released > 0) result = improve(r, AGAIN);
   }
   return result;
 }
 
 static laves_result improve_layer(laves__run *r) {
-  const laves_result result = improve(r, false);
+  const laves_result result = improve(r, ALL_OF_IT);
   return result == LAVES_OK && r->frame.features ? release_features(r) : result;
 }
 
@@ -129,65 +138,111 @@ static laves_result find_forced(laves__run *r) {
   return LAVES_OK;
 }
 
-/* Improves a layer that was made anew: only those components that are not as they were before, or were broken. `improved`: what
- * was made of the layer whose components were `before`. */
-static laves_result improve_changed(laves__run *r, const laves__layer *improved, const laves__components *before,
-                                    const laves__components *now, const bool *broken) {
-  laves__twins twins;
-  laves_result result = LAVES_OK;
-  if (!laves__twins_find(improved, before, now, broken, &twins)) {
-    result = laves__fail_memory(r->context, r->error);
-  } else {
-    laves__twins_set_aside(&twins, &r->layer);
-    result = improve_layer(r);
-    if (result == LAVES_OK && !laves__twins_bring_back(&twins, &r->layer)) result = laves__fail_memory(r->context, r->error);
+/* Only what is outside the promised window is improved, and features are let go of only there. */
+static laves_result rescue(laves__run *r) {
+  const laves__window promised = {.min_dihedral = r->guarantee->min_dihedral, .max_dihedral = r->guarantee->max_dihedral};
+  laves_result result = improve(r, RESCUE);
+  for (int what = LAVES__RELEASE_OFF; what < LAVES__RELEASES && result == LAVES_OK && r->frame.features; what++) {
+    const size_t released = laves__release_features(&r->frame, &promised, what, &r->layer);
+    if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
+    r->released += released;
+    if (released > 0) result = improve(r, RESCUE);
   }
-  laves__twins_free(&twins);
   return result;
 }
 
-/* The boundary made anew by stuffing in the lattice's zone, held to features and improved. */
-static laves_result mend_zone(laves__run *r, laves__components *before, const bool *broken) {
-  laves__layer improved = r->layer;
-  laves__components now = {0};
-  memset(&r->layer, 0, sizeof r->layer);
+/* Tets that break the promise. */
+static size_t count_broken(const laves__run *r) { return laves__count_broken(r->guarantee, &r->layer, r->forced); }
+
+/* Adds to the zone that is stuffed: what is around the broken tets; in later rounds a wider neighbourhood, then all of the layer
+ * that hangs together with them, in the end all of the solid that does, where the window is proved. */
+static bool widen_zone(laves__run *r, const laves__components *now, int round) {
+  enum { WALLS = 2, ALL = 6 }; /* the first rounds of those kinds */
+  const bool crowd = (double)count_broken(r) > crowded * (double)r->layer.tet_count;
+  if (round >= WALLS) {
+    bool *broken_wall = laves__alloc(r->context, now->count, sizeof *broken_wall);
+    if (!broken_wall) return false;
+    laves__find_broken_walls(r->guarantee, &r->layer, r->forced, now, broken_wall);
+    laves__zone_walls(&r->layer, now, broken_wall, &r->lattice);
+    laves__free(r->context, broken_wall, now->count, sizeof *broken_wall);
+  }
+  laves__zone_around(r->guarantee, &r->layer, r->forced, round == 0 ? 1 : 3, &r->lattice);
+  return !(crowd || round >= ALL) || laves__zone_components(&r->lattice);
+}
+
+/* What is mended: the layer as it was improved the first time, its components before that, and those of what takes its place. */
+typedef struct mending {
+  laves__layer improved;
+  laves__components *before, now;
+  bool *again; /* [before->count] components that do not come back as they are */
+  laves__twins twins;
+  bool complete; /* what was made anew is improved as far as it can be */
+} mending;
+
+/* The boundary made anew by stuffing in the lattice's zone, held to features, without the components that come back. */
+static laves_result make_zone(laves__run *r, mending *m) {
+  laves__layer_free(&r->layer);
+  laves__components_free(&m->now);
+  laves__twins_free(&m->twins);
   laves_result result = laves__stuff_zone(r);
   if (result == LAVES_OK && r->frame.features) result = hold_features(r);
-  if (result == LAVES_OK && !laves__components_find(&r->layer, &now)) result = laves__fail_memory(r->context, r->error);
-  if (result == LAVES_OK) result = improve_changed(r, &improved, before, &now, broken);
-  laves__layer_free(&improved);
-  laves__components_free(before);
-  *before = now;
+  if (result != LAVES_OK) return result;
+  if (!laves__components_find(&r->layer, &m->now) || !laves__twins_find(&m->improved, m->before, &m->now, m->again, &m->twins))
+    return laves__fail_memory(r->context, r->error);
+  laves__twins_set_aside(&m->twins, &r->layer);
+  return LAVES_OK;
+}
+
+/* Where more than this share of what was made anew breaks the promise before it is improved, only all of improvement helps. */
+static const double dense_share = 0.003;
+
+/* Stuffing in a growing zone, until no tet breaks the promise or nothing more can be stuffed. Where few do, only those are
+ * improved meanwhile: it is the zone that is looked for, and to improve all of it in each round would take long. */
+static laves_result find_zone(laves__run *r, mending *m) {
+  enum { ROUNDS = 8 };
+  for (int round = 0; round < ROUNDS; round++) {
+    laves_result result = make_zone(r, m);
+    m->complete = (double)laves__count_broken(r->guarantee, &r->layer, NULL) > dense_share * (double)m->now.vertex_count;
+    if (result == LAVES_OK) result = m->complete ? improve_layer(r) : rescue(r);
+    if (result == LAVES_OK) result = find_forced(r);
+    if (result != LAVES_OK) return result;
+    const size_t broken = count_broken(r);
+    if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
+    if (broken == 0) return LAVES_OK;
+    if (!widen_zone(r, &m->now, round + 1)) return laves__fail_memory(r->context, r->error);
+  }
+  return LAVES_OK;
+}
+
+/* Mends the promise, and improves what was made anew. */
+static laves_result mend(laves__run *r, mending *m) {
+  m->again = laves__alloc(r->context, m->before->count, sizeof *m->again);
+  if (!m->again) return laves__fail_memory(r->context, r->error);
+  laves__find_broken_walls(r->guarantee, &r->layer, r->forced, m->before, m->again);
+  if (!widen_zone(r, m->before, 0)) return laves__fail_memory(r->context, r->error);
+  m->improved = r->layer;
+  memset(&r->layer, 0, sizeof r->layer);
+  laves_result result = find_zone(r, m);
+  if (result == LAVES_OK && !m->complete) result = improve_layer(r);
+  if (result == LAVES_OK && !laves__twins_bring_back(&m->twins, &r->layer)) result = laves__fail_memory(r->context, r->error);
   return result;
 }
 
-/* Where the promised window is broken, the boundary is made anew by stuffing: around the place, in a wider neighbourhood, in
- * all of the layer that hangs together with it, in the end in all of the solid that does, where the window is proved. `before`:
- * the components of the layer before it was improved. */
+/* Where the promised window is broken, but for what the input forces. `before`: the components of the layer before it was
+ * improved. */
 static laves_result mend_promise(laves__run *r, laves__components *before) {
-  enum { WALLS = 2, ALL = 6, ROUNDS }; /* the first rounds of those kinds */
-  for (int round = 0; round < ROUNDS; round++) {
-    laves_result result = find_forced(r);
-    if (result != LAVES_OK) return result;
-    const size_t broken = laves__count_broken(r->guarantee, &r->layer, r->forced);
-    if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
-    if (broken == 0) {
-      r->report->forced_tets = laves__count_broken(r->guarantee, &r->layer, NULL);
-      return LAVES_OK;
-    }
-    const bool crowd = (double)broken > crowded * (double)r->layer.tet_count;
-    const size_t walls = before->count;
-    bool *broken_wall = laves__alloc(r->context, walls, sizeof *broken_wall);
-    bool memory = broken_wall != NULL;
-    if (memory) laves__find_broken_walls(r->guarantee, &r->layer, r->forced, before, broken_wall);
-    if (memory && round >= WALLS) laves__zone_walls(&r->layer, before, broken_wall, &r->lattice);
-    laves__zone_around(r->guarantee, &r->layer, r->forced, round == 0 ? 1 : 3, &r->lattice);
-    if (crowd || round == ALL) memory = memory && laves__zone_components(&r->lattice);
-    result = memory ? mend_zone(r, before, broken_wall) : laves__fail_memory(r->context, r->error);
-    laves__free(r->context, broken_wall, walls, sizeof *broken_wall);
-    if (result != LAVES_OK) return result;
+  laves_result result = find_forced(r);
+  if (result == LAVES_OK && count_broken(r) > 0) {
+    mending m = {.before = before};
+    result = laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : mend(r, &m);
+    laves__twins_free(&m.twins);
+    laves__components_free(&m.now);
+    laves__layer_free(&m.improved);
+    laves__free(r->context, m.again, before->count, sizeof *m.again);
+    if (result == LAVES_OK) result = find_forced(r);
   }
-  return LAVES_OK;
+  if (result == LAVES_OK && r->forced) r->report->forced_tets = laves__count_broken(r->guarantee, &r->layer, NULL);
+  return result == LAVES_OK && laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : result;
 }
 
 /* The layer improved, and inside the promised window. */

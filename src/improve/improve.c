@@ -36,7 +36,8 @@ static const size_t crease_crowd_min = 500; /* tets */
 /* Where even more than this share is bad after one pass, the solid is noise at this size: smoothing goes on for one more pass
  * only, and only tets far outside get a contraction. */
 static const double rough_share = 0.2;
-static const double rough_admit = 0.4; /* quality: about 26 degrees */
+static const double rough_admit = 0.4;  /* quality: about 26 degrees */
+static const double rescue_slack = 1.2; /* times the quality of the angles that are rescued from */
 /* Where that is known beforehand, smoothing leaves those alone, too, that are better than this. */
 static const double brief_admit = 0.6;      /* about 32 degrees */
 static const double block_side = 15;        /* local sizes; see above */
@@ -371,7 +372,8 @@ static laves_result mend_tiling(work *w, bool brief, laves_error *error) {
   w->rounds = THOROUGH_ROUNDS;
   w->admit = w->layer->hold && is_crowded(w, crowd, crease_crowd_min) ? far_outside : thorough_below;
   forget(w);
-  if (result == LAVES_OK && !crowded && !rough) result = run_passes(w, CONTRACT_PASSES, 2, error);
+  const int patience = is_crowded(w, 0, crowd_min) ? 1 : 2;
+  if (result == LAVES_OK && !crowded && !rough) result = run_passes(w, CONTRACT_PASSES, patience, error);
   if (result == LAVES_OK) peel_all(w);
   return result;
 }
@@ -436,8 +438,23 @@ static laves_result mend_again(work *w, laves_error *error) {
   return result;
 }
 
+/* Only the worst: smoothing makes room, and contraction does the rest. */
+static laves_result rescue(work *w, const laves__window *window, laves_error *error) {
+  static const double radians = 3.14159265358979323846 / 180;
+  settle_all(w, settle_floor);
+  w->admit = rescue_slack * fmax(w->measure.low_scale * (1 - cos(window->rescue_min * radians)),
+                                 w->measure.high_scale * (1 + cos(window->rescue_max * radians)));
+  w->admit = fmin(w->admit, 1);
+  laves_result result = run_passes(w, SMOOTH_PASSES, 1, error);
+  w->rounds = THOROUGH_ROUNDS;
+  if (result == LAVES_OK) result = run_passes(w, CONTRACT_PASSES, 2, error);
+  if (result == LAVES_OK) peel_all(w);
+  return result;
+}
+
 /* The schedule for what the layer is. */
 static laves_result mend_all(work *w, const laves__window *window, laves_error *error) {
+  if (window->rescue_min > 0) return rescue(w, window, error);
   if (window->again) return mend_again(w, error);
   const laves_result result = w->layer->hold ? bring_home(w, error) : LAVES_OK;
   if (result != LAVES_OK) return result;
@@ -476,7 +493,8 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   for (size_t t = 0; t < layer->tet_count; t++) w.given_up[t] = w.stuck[t] = HUGE_VAL;
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
   if (!laves__parallel_for(context, NULL, layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
-  if (result == LAVES_OK && !window->again) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
+  if (result == LAVES_OK && !window->again && window->rescue_min == 0)
+    result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
   if (result == LAVES_OK) result = mend_all(&w, window, error);
   if (result == LAVES_OK) settle_all(&w, settle_floor);
   if (result == LAVES_OK && short_of_memory(&w, workers)) result = laves__fail_memory(context, error);

@@ -25,6 +25,7 @@ typedef struct laves__window {
   double volume_length;              /* 0: not asked */
   double held_min, held_max;         /* all tets are inside these angles and stay so; 0 and 180: nothing is held */
   bool again;                        /* after a first time: without the Laplace start */
+  double rescue_min, rescue_max;     /* with all patience, but only what is outside these, or nearly; 0 and 180: all */
   bool brief;                        /* the solid is rougher than the size: few passes, and only the worst get more */
 } laves__window;
 
