@@ -29,9 +29,12 @@ typedef struct laves__faults {
 laves_result laves__check_boundary(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
                                    laves_check *check, laves__faults *faults, laves_error *error);
 
-/* Angles, ratios, volume and area. */
-laves_result laves__check_shapes(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
-                                 laves_check *check, laves_error *error);
+/* Angles, ratios and volume. */
+laves_result laves__check_shapes(laves_context *context, const laves_mesh *mesh, laves_check *check, laves_error *error);
+
+/* Area of the boundary. */
+laves_result laves__check_area(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
+                               laves_check *check, laves_error *error);
 
 /* The boundary alone. */
 laves_result laves__find_boundary(laves_context *context, const laves_mesh *mesh, laves__boundary *boundary, laves_error *error);

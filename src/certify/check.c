@@ -29,7 +29,8 @@ laves_result laves__survey_mesh(laves_context *context, const laves_mesh *mesh, 
   laves__boundary *boundary = &survey->boundary;
   laves_result result = laves__check_topology(context, mesh, check, boundary, error);
   if (result == LAVES_OK) result = laves__check_boundary(context, mesh, boundary, check, &survey->faults, error);
-  if (result == LAVES_OK) result = laves__check_shapes(context, mesh, boundary, check, error);
+  if (result == LAVES_OK) result = laves__check_shapes(context, mesh, check, error);
+  if (result == LAVES_OK) result = laves__check_area(context, mesh, boundary, check, error);
   if (result == LAVES_OK) result = laves__check_edges(context, mesh, check, error);
   if (result == LAVES_OK && domain)
     result = laves__check_distances(context, mesh, boundary, domain, check, &survey->samples, error);
