@@ -49,6 +49,14 @@ static void fill_blocks(void *user, size_t begin, size_t end, int worker) {
   }
 }
 
+void laves__place_of_tet(const laves__vec3 p[4], const laves_domain *domain, laves_place *place) {
+  const laves__vec3 centroid = v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25);
+  double longest = 0;
+  for (int e = 0; e < 6; e++) longest = fmax(longest, v3_distance(p[laves__tet_edge[e][0]], p[laves__tet_edge[e][1]]));
+  memcpy(place->place, &centroid, sizeof centroid);
+  if (domain) place->curvature_radius = laves__curvature_radius(domain, centroid, longest);
+}
+
 static void place_block(void *user, size_t begin, size_t end, int worker) {
   const search *w = user;
   (void)worker;
@@ -56,14 +64,11 @@ static void place_block(void *user, size_t begin, size_t end, int worker) {
     laves_place *place = &w->places[i];
     const size_t tet = w->found[i].value;
     laves__vec3 p[4];
-    double bad, longest = 0;
+    double bad;
     *place = (laves_place){.tet = (int64_t)tet, .curvature_radius = NAN};
     measure(w, tet, &bad, &place->value);
     if (!laves__tet_corners(w->mesh, tet, p)) continue;
-    const laves__vec3 centroid = v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25);
-    for (int e = 0; e < 6; e++) longest = fmax(longest, v3_distance(p[laves__tet_edge[e][0]], p[laves__tet_edge[e][1]]));
-    memcpy(place->place, &centroid, sizeof centroid);
-    if (w->domain) place->curvature_radius = laves__curvature_radius(w->domain, centroid, longest);
+    laves__place_of_tet(p, w->domain, place);
   }
 }
 

@@ -321,12 +321,12 @@ static laves_result read_points(void *user, size_t first, size_t count, laves__v
   if (a->kind == LAVES__VTU_FLOAT64) return read_range(r, a, 3 * first, 3 * count, (char *)points, error);
   const size_t size = laves__vtu_kinds[a->kind].bytes;
   char bytes[POINT_NUMBERS * 8];
-  double *out = &points->x;
   for (size_t done = 0, part; done < 3 * count; done += part) {
     part = 3 * count - done < POINT_NUMBERS ? 3 * count - done : POINT_NUMBERS;
     const laves_result result = read_range(r, a, 3 * first + done, part, bytes, error);
     if (result != LAVES_OK) return result;
-    for (size_t i = 0; i < part; i++) out[done + i] = laves__vtu_real(a->kind, bytes + i * size);
+    for (size_t i = 0; i < part; i++)
+      *v3_slot(&points[(done + i) / 3], (int)((done + i) % 3)) = laves__vtu_real(a->kind, bytes + i * size);
   }
   return LAVES_OK;
 }
