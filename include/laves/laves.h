@@ -650,10 +650,11 @@ typedef struct laves_file_check {
 /// @return LAVES_OK when the check ran (see check->check.valid), LAVES_ERROR_OPTION, LAVES_ERROR_INPUT (what laves_mesh_read()
 ///         refuses, such as corners out of range, or a file that can't be read by ranges), LAVES_ERROR_MEMORY,
 ///         LAVES_ERROR_CANCELLED
-/// Cost: about 0.4 microseconds a tet, shared by the threads, and once more (twice at most) where surfaces touch at inner
-/// vertices or every tet is negative. Memory: cache_bytes; 3 bits a vertex; 7 MB for tets in work; about 70 bytes a face of the
-/// front, that is of the surface between tets already read and those still to come, and of the boundary; and at the end
-/// about 150 bytes a face of the boundary alone. Same result for any number of threads, and any cache.
+/// Cost: about 0.7 microseconds a tet, of which a tenth is not shared by the threads; once more where every tet is negative, and
+/// once or twice more where tets meet at a vertex inside the mesh without sharing faces around it. Memory: cache_bytes;
+/// 3 bits a vertex; 4 MB for tets in work, 2 MB for each thread beyond two; 50 to 100 bytes a face of the front, that is of the
+/// surface between tets already read and those still to come, and of the boundary; and at the end 150 bytes a face of
+/// the boundary alone. Same result for any number of threads, and any cache.
 LAVES_API laves_result laves_check_file(laves_context *context, const char *path, const laves_file_check_options *options,
                                         laves_file_check *check, laves_error *error);
 

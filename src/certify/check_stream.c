@@ -18,7 +18,7 @@
 #include "mesh/face_match.h"
 
 enum {
-  BLOCKS_MIN = 8,        /* of LAVES__TALLY_TETS tets in a batch */
+  BLOCKS_MIN = 4,        /* of LAVES__TALLY_TETS tets in a batch */
   BLOCKS_PER_WORKER = 2, /* at least */
   BLOCK_FACES = 4 * LAVES__TALLY_TETS,
   UNUSABLE = 2,
@@ -348,7 +348,7 @@ static laves_result run_passes(sweep *s, laves_check *check, laves_error *error)
     if (!s->turned && !s->all.any_positive && s->all.any_negative) {
       s->turned = true;
       forget_measures(s, check);
-    } else if (atomic_load(&s->table.was_reopened)) {
+    } else if (atomic_load(&s->table.was_reopened) && !s->table.keep_all) {
       s->measured = true;
       s->table.keep_all = repeated++ > 0;
     } else {

@@ -31,12 +31,12 @@ typedef struct outline {
 
 static void free_outline(outline *o) {
   laves_context *context = o->context;
+  laves__free(context, o->seen, o->boundary.count, 1);
   laves__boundary_free(&o->boundary);
   laves__free(context, o->ranks.bits, o->ranks.words, sizeof *o->ranks.bits);
   laves__free(context, o->ranks.before, o->ranks.words, sizeof *o->ranks.before);
   laves__free(context, o->points, o->ranks.count, sizeof *o->points);
   laves__free(context, o->table, o->table_size, sizeof *o->table);
-  laves__free(context, o->seen, o->boundary.count, 1);
 }
 
 /* ---- vertices ---- */

@@ -240,9 +240,12 @@ static void drop_faces(void *user, size_t begin, size_t end, int worker) {
   }
 }
 
-/* The entry with these corners, or the empty one where it would be. */
-static laves__face_entry *find_entry(const laves__face_shard *shard, const uint32_t corners[3]) {
-  size_t i = place_of(hash_of(corners), shard->capacity);
+static size_t place_in(const laves__face_shard *shard, const uint32_t corners[3]) {
+  return place_of(hash_of(corners), shard->capacity);
+}
+
+/* The entry with these corners, or the empty one where it would be; i: place_in(). */
+static laves__face_entry *find_entry(const laves__face_shard *shard, const uint32_t corners[3], size_t i) {
   for (;;) {
     laves__face_entry *entry = &shard->entries[i];
     if (entry->tag == LAVES__FACE_NONE || memcmp(entry->corners, corners, sizeof entry->corners) == 0) return entry;
@@ -269,7 +272,7 @@ static void rebuild_shards(void *user, size_t begin, size_t end, int worker) {
     for (size_t i = 0; i < shard->capacity && !stopped(table, i, worker); i++) {
       const laves__face_entry *entry = &shard->entries[i];
       if (laves__face_state_of(entry) == LAVES__FACE_NONE) continue;
-      laves__face_entry *to = find_entry(&fresh, entry->corners);
+      laves__face_entry *to = find_entry(&fresh, entry->corners, place_in(&fresh, entry->corners));
       *to = *entry;
       to->label = table->renamed[entry->label];
     }
@@ -338,21 +341,32 @@ void laves__face_table_use(laves__face_table *table, int32_t vertex) {
   if (add_bit(table->reopened, v)) atomic_store_explicit(&table->was_reopened, true, memory_order_relaxed);
 }
 
+static void insert(laves__face_table *table, laves__face_shard *into, const laves__face_entry *record, size_t place,
+                   uint32_t label) {
+  laves__face_entry *entry = find_entry(into, record->corners, place);
+  const laves__face_state state = laves__face_state_of(entry);
+  if (state == LAVES__FACE_NONE) {
+    *entry = *record;
+    entry->label += label;
+    into->count++;
+    return;
+  }
+  unite(table, entry->label, label + record->label);
+  const bool fits = state == LAVES__FACE_OPEN && ascends(entry) != ascends(record);
+  set_state(entry, fits ? LAVES__FACE_MATCHED : LAVES__FACE_BAD);
+}
+
+/* Places are looked up some records ahead, so that memory has time to bring them. */
 void laves__face_table_insert(laves__face_table *table, size_t shard, const laves__face_entry *records, size_t count,
                               uint32_t label) {
+  enum { AHEAD = 16 };
   laves__face_shard *into = &table->shards[shard];
-  for (size_t i = 0; i < count; i++) {
-    laves__face_entry *entry = find_entry(into, records[i].corners);
-    const laves__face_state state = laves__face_state_of(entry);
-    if (state == LAVES__FACE_NONE) {
-      *entry = records[i];
-      entry->label += label;
-      into->count++;
-      continue;
-    }
-    unite(table, entry->label, label + records[i].label);
-    const bool fits = state == LAVES__FACE_OPEN && ascends(entry) != ascends(&records[i]);
-    set_state(entry, fits ? LAVES__FACE_MATCHED : LAVES__FACE_BAD);
+  size_t places[AHEAD];
+  for (size_t i = 0; i < count + AHEAD; i++) {
+    if (i >= AHEAD) insert(table, into, &records[i - AHEAD], places[i % AHEAD], label);
+    if (i >= count) continue;
+    places[i % AHEAD] = place_in(into, records[i].corners);
+    __builtin_prefetch(&into->entries[places[i % AHEAD]], 1);
   }
 }
 
