@@ -81,7 +81,6 @@ static void stream_json(json *out, const session *run, const void *facts) {
   json_number(out, "window_volume_length", all->window.volume_length);
   json_integer(out, "outside_window", (int64_t)all->outside.found);
   place_list_write_json(out, "outside_window_places", &all->outside);
-  json_integer(out, "library_peak_bytes", (int64_t)laves_context_peak_bytes(run->context));
   json_open_object(out, "seconds");
   json_number(out, "check", all->check_seconds);
   json_number(out, "total", progress_now() - run->start);

@@ -46,7 +46,7 @@ typedef struct ranges {
   laves__vtu structure;
   char *head;
   size_t head_bytes;
-  ranged arrays[LAVES__VTU_TYPES + 1];
+  ranged arrays[LAVES__VTU_REGION + 1];
   z_stream inflater;
   bool inflater_made;
   char *packed;
@@ -233,6 +233,9 @@ static laves_result find_arrays(ranges *r, laves_error *error) {
   if (result == LAVES_OK) result = find_array(r, p, LAVES__VTU_POINTS, 3 * p->point_count, error);
   if (result == LAVES_OK) result = find_array(r, p, LAVES__VTU_OFFSETS, p->cell_count, error);
   if (result == LAVES_OK) result = find_array(r, p, LAVES__VTU_TYPES, p->cell_count, error);
+  /* Nobody asks for regions, but a file that is cut off within them is damaged. */
+  if (result == LAVES_OK && p->sources[LAVES__VTU_REGION].place != LAVES__VTU_ABSENT)
+    result = find_array(r, p, LAVES__VTU_REGION, p->cell_count, error);
   return result;
 }
 

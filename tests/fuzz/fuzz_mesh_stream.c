@@ -19,11 +19,15 @@ static laves_context *make_context(size_t length) {
 
 static bool same(double a, double b) { return memcmp(&a, &b, sizeof a) == 0; }
 
-/* The file must be readable, and both checks must agree. */
+/* The file must be readable, but for the content of its regions, which the check does not read, and both checks must agree. */
 static void compare(laves_context *context, const char *path, const laves_check *found) {
   laves_mesh *mesh;
   laves_check whole;
-  FUZZ_REQUIRE(laves_mesh_read(context, path, &mesh, NULL) == LAVES_OK);
+  laves_error error = {0};
+  if (laves_mesh_read(context, path, &mesh, &error) != LAVES_OK) {
+    FUZZ_REQUIRE(strstr(error.text, "the regions") != NULL);
+    return;
+  }
   FUZZ_REQUIRE(laves_check_mesh(context, mesh, NULL, &whole, NULL) == LAVES_OK);
   FUZZ_REQUIRE(found->valid == whole.valid && found->tets == whole.tets && found->vertices == whole.vertices);
   FUZZ_REQUIRE(found->bad_indices == whole.bad_indices && found->inverted_tets == whole.inverted_tets);
