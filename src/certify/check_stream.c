@@ -216,6 +216,9 @@ static void insert_shards(void *user, size_t begin, size_t end, int worker) {
 
 /* ---- one batch ---- */
 
+/* How much of the whole check is done; the rest is the boundary's. */
+static double fraction_of(const sweep *s) { return 0.8 * s->stream->fraction; }
+
 /* The next tets and their corners. */
 static laves_result fetch_batch(sweep *s, laves_error *error) {
   laves__mesh_stream *stream = s->stream;
@@ -229,8 +232,7 @@ static laves_result fetch_batch(sweep *s, laves_error *error) {
     }
     for (int i = 0; i < 4 && result == LAVES_OK; i++)
       result = laves__point_cache_get(&s->cache, tet[i], &s->corners[t][i], error);
-    if (t % LAVES__TALLY_TETS == 0 && laves__cancelled(s->context, "check", stream->fraction))
-      return laves__fail_cancelled(error);
+    if (t % LAVES__TALLY_TETS == 0 && laves__cancelled(s->context, "check", fraction_of(s))) return laves__fail_cancelled(error);
   }
   return result;
 }
@@ -301,7 +303,7 @@ static laves_result take_batch(sweep *s, laves_check *check, laves_error *error)
   laves_context *context = s->context;
   const size_t blocks = blocks_in_use(s);
   size_t counts[LAVES__FACE_SHARDS] = {0};
-  s->table.fraction = s->stream->fraction;
+  s->table.fraction = fraction_of(s);
   if (!laves__parallel_for(context, NULL, blocks, 1, measure_blocks, s)) return laves__fail_cancelled(error);
   for (size_t b = 0; b < blocks; b++)
     for (size_t k = 0; k < LAVES__FACE_SHARDS; k++) counts[k] += s->blocks[b].starts[k + 1] - s->blocks[b].starts[k];

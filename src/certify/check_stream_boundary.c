@@ -9,7 +9,7 @@
 
 #include "certify/check_stream.h"
 
-enum { TRIANGLES_AT_ONCE = 1 << 12 };
+enum { TRIANGLES_AT_ONCE = 1 << 12, WORDS_BETWEEN_ASKING = 1 << 8 };
 
 /* A set of vertices that knows how many of its members come before another. */
 typedef struct ranking {
@@ -76,7 +76,7 @@ static laves_result rank_vertices(outline *o, size_t vertex_count, laves_error *
 static laves_result fetch_points(outline *o, laves__point_cache *cache, laves_error *error) {
   size_t next = 0;
   for (size_t w = 0; w < o->ranks.words; w++) {
-    if (laves__cancelled_at(o->context, "check", w, o->ranks.words)) return laves__fail_cancelled(error);
+    if (w % WORDS_BETWEEN_ASKING == 0 && laves__cancelled(o->context, "check", 0.8)) return laves__fail_cancelled(error);
     for (uint64_t bits = o->ranks.bits[w]; bits; bits &= bits - 1) {
       const int32_t vertex = (int32_t)(64 * w + (size_t)__builtin_ctzll(bits));
       const laves_result result = laves__point_cache_get(cache, vertex, &o->points[next++], error);
@@ -202,7 +202,7 @@ static laves_result compare_triangles(outline *o, laves__mesh_stream *stream, la
   stream->rewind(stream->user, 3);
   do {
     if (result == LAVES_OK) result = stream->next(stream->user, triangles, TRIANGLES_AT_ONCE, &count, error);
-    if (result == LAVES_OK && laves__cancelled(o->context, "check", stream->fraction)) result = laves__fail_cancelled(error);
+    if (result == LAVES_OK && laves__cancelled(o->context, "check", 0.8)) result = laves__fail_cancelled(error);
     for (size_t i = 0; i < count && result == LAVES_OK; i++) look_up(o, triangles[i], check);
   } while (result == LAVES_OK && count > 0);
   for (size_t i = 0; i < o->boundary.count && result == LAVES_OK; i++) check->file_faces_missing += !o->seen[i];

@@ -5,7 +5,7 @@
  * found. */
 #include "certify/point_cache.h"
 
-enum { SLOTS_MIN = 8 };
+enum { SLOTS_MIN = 8, BLOCKS_BETWEEN_ASKING = 64 };
 
 laves_result laves__point_cache_make(laves__point_cache *cache, laves_context *context, laves__mesh_stream *stream, size_t bytes,
                                      laves_error *error) {
@@ -66,7 +66,7 @@ laves_result laves__point_cache_load(laves__point_cache *cache, size_t block, la
 laves_result laves__point_cache_see_all(laves__point_cache *cache, laves_error *error) {
   for (size_t block = 0; block < cache->block_count; block++) {
     if (cache->seen[block]) continue;
-    if (laves__cancelled_at(cache->context, "check", block, cache->block_count)) return laves__fail_cancelled(error);
+    if (block % BLOCKS_BETWEEN_ASKING == 0 && laves__cancelled(cache->context, "check", 0.8)) return laves__fail_cancelled(error);
     const laves_result result = laves__point_cache_load(cache, block, error);
     if (result != LAVES_OK) return result;
   }
