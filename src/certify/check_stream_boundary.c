@@ -9,7 +9,7 @@
 
 #include "certify/check_stream.h"
 
-enum { TRIANGLES_AT_ONCE = 1 << 12, WORDS_BETWEEN_ASKING = 1 << 8 };
+enum { TRIANGLES_AT_ONCE = 1 << 12, WORDS_BETWEEN_ASKING = 1 << 8, FACES_BETWEEN_ASKING = 1 << 16 };
 
 /* A set of vertices that knows how many of its members come before another. */
 typedef struct ranking {
@@ -55,6 +55,7 @@ static laves_result rank_vertices(outline *o, size_t vertex_count, laves_error *
   r->bits = laves__alloc_zeroed(o->context, r->words, sizeof *r->bits);
   r->before = laves__alloc(o->context, r->words, sizeof *r->before);
   if (!r->bits || !r->before) return laves__fail_memory(o->context, error);
+  if (laves__cancelled(o->context, "check", 0.8)) return laves__fail_cancelled(error);
   for (size_t i = 0; i < o->boundary.count; i++)
     for (int j = 0; j < 3; j++) {
       const int32_t vertex = o->boundary.faces[i][j];
@@ -68,6 +69,7 @@ static laves_result rank_vertices(outline *o, size_t vertex_count, laves_error *
   o->points = laves__alloc(o->context, count, sizeof *o->points);
   if (!o->points) return laves__fail_memory(o->context, error);
   r->count = count;
+  if (laves__cancelled(o->context, "check", 0.8)) return laves__fail_cancelled(error);
   for (size_t i = 0; i < o->boundary.count; i++)
     for (int j = 0; j < 3; j++) o->boundary.faces[i][j] = rank_of(r, o->boundary.faces[i][j]);
   return LAVES_OK;
@@ -161,6 +163,7 @@ static laves_result make_lookup(outline *o, laves_error *error) {
   if (!o->table || !o->seen) return laves__fail_memory(o->context, error);
   for (size_t i = 0; i < o->boundary.count; i++) {
     int32_t corners[3];
+    if (i % FACES_BETWEEN_ASKING == 0 && laves__cancelled(o->context, "check", 0.8)) return laves__fail_cancelled(error);
     sorted(o->boundary.faces[i], corners);
     o->table[find_place(o, corners)] = (uint32_t)i + 1;
   }
