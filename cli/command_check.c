@@ -5,22 +5,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "check_stream.h"
 #include "command.h"
 #include "feature_report.h"
 #include "input.h"
 #include "output.h"
+#include "place_list.h"
 #include "session.h"
 #include "statement.h"
 #include "summary.h"
 #include "text.h"
 
 enum { DIFFERENCES_SAID = 20 };
-
-typedef struct place_list {
-  laves_place *places;
-  size_t capacity, found;                     /* found may exceed capacity */
-  double crease_angles[LAVES_PLACE_CAPACITY]; /* of the first ones; NAN: no crease */
-} place_list;
 
 typedef struct check_run {
   laves_mesh *mesh;
@@ -35,14 +31,6 @@ typedef struct check_run {
   double read_seconds, check_seconds;
 } check_run;
 
-static bool make_list(place_list *list, int64_t capacity) {
-  list->capacity = (size_t)capacity;
-  list->places = calloc(list->capacity + 1, sizeof *list->places);
-  return list->places != NULL;
-}
-
-static size_t listed(const place_list *list) { return list->found < list->capacity ? list->found : list->capacity; }
-
 static laves_result read_mesh(session *run, check_run *all) {
   const double start = progress_now();
   laves_result result = laves_mesh_read(run->context, run->given->input, &all->mesh, &run->error);
@@ -55,7 +43,6 @@ static laves_result read_mesh(session *run, check_run *all) {
 static void take_places(const laves_certificate *certificate, laves_exception_kind kind, place_list *list) {
   list->found = certificate->exception_counts[kind];
   size_t taken = 0;
-  for (size_t i = 0; i < LAVES_PLACE_CAPACITY; ++i) list->crease_angles[i] = NAN;
   for (size_t i = 0; i < certificate->exception_count && taken < list->capacity; ++i) {
     const laves_exception *e = &certificate->exceptions[i];
     if (e->kind != kind) continue;
@@ -69,18 +56,18 @@ static void take_places(const laves_certificate *certificate, laves_exception_ki
 /* More than a certificate lists is looked for anew. */
 static laves_result find_places(session *run, check_run *all) {
   const laves_certificate *c = &all->certificate;
-  if (!make_list(&all->outside, run->given->list) || !make_list(&all->distant, run->given->list)) {
+  if (!place_list_make(&all->outside, run->given->list) || !place_list_make(&all->distant, run->given->list)) {
     return session_fail(run, LAVES_ERROR_MEMORY, "no memory for a list of %lld places", (long long)run->given->list);
   }
   take_places(c, LAVES_EXCEPTION_OUTSIDE_ASKED, &all->outside);
   take_places(c, LAVES_EXCEPTION_DISTANT, &all->distant);
   laves_result result = LAVES_OK;
-  if (listed(&all->outside) > LAVES_PLACE_CAPACITY) {
+  if (place_list_listed(&all->outside) > LAVES_PLACE_CAPACITY) {
     result = laves_check_window(run->context, all->mesh, all->surface.domain, all->window.min_dihedral, all->window.max_dihedral,
                                 all->window.volume_length, all->outside.places, all->outside.capacity, &all->outside.found,
                                 &run->error);
   }
-  if (result == LAVES_OK && listed(&all->distant) > LAVES_PLACE_CAPACITY) {
+  if (result == LAVES_OK && place_list_listed(&all->distant) > LAVES_PLACE_CAPACITY) {
     result = laves_check_distance(run->context, all->mesh, all->surface.domain, c->distance_asked, all->distant.places,
                                   all->distant.capacity, &all->distant.found, &run->error);
   }
@@ -112,40 +99,9 @@ static laves_result verify(session *run, check_run *all) {
 
 /* ---- words ---- */
 
-/* Known of the first places, which the certificate lists. */
-static double crease_angle(const place_list *list, size_t i) { return i < LAVES_PLACE_CAPACITY ? list->crease_angles[i] : NAN; }
-
-static void say_place(const place_list *list, size_t i) {
-  const laves_place *at = &list->places[i];
-  text_buffer place;
-  char curvature[60] = "";
-  if (isfinite(at->curvature_radius)) snprintf(curvature, sizeof curvature, ", curvature radius %.3g", at->curvature_radius);
-  if (isfinite(crease_angle(list, i)))
-    snprintf(curvature, sizeof curvature, ", on a crease of %.2f%s", crease_angle(list, i), text_degree());
-  if (at->value < 1) {
-    text_say("    tet %lld: volume-length %.3f at %s%s", (long long)at->tet, at->value, text_place(&place, at->place), curvature);
-  } else {
-    text_say("    tet %lld: %.2f%s at %s%s", (long long)at->tet, at->value, text_degree(), text_place(&place, at->place),
-             curvature);
-  }
-}
-
-static void say_window(const check_run *all) {
-  text_buffer count;
-  if (all->outside.found == 0) {
-    text_say("  every tet within %g .. %g%s, volume-length at least %g", all->window.min_dihedral, all->window.max_dihedral,
-             text_degree(), all->window.volume_length);
-    return;
-  }
-  text_say("  %s outside %g .. %g%s or below volume-length %g%s", text_plural(&count, all->outside.found, "tet"),
-           all->window.min_dihedral, all->window.max_dihedral, text_degree(), all->window.volume_length,
-           all->outside.capacity ? "; the worst:" : "");
-  for (size_t i = 0; i < listed(&all->outside); ++i) say_place(&all->outside, i);
-}
-
 static void say_distant(const check_run *all) {
   text_buffer place;
-  for (size_t i = 0; i < listed(&all->distant); ++i) {
+  for (size_t i = 0; i < place_list_listed(&all->distant); ++i) {
     text_say("    %.4g apart at %s", all->distant.places[i].value, text_place(&place, all->distant.places[i].place));
   }
 }
@@ -175,7 +131,7 @@ static void say_check(const session *run, const check_run *all) {
   if (check->unused_vertices) text_say("  %s in no tet (harmless)", text_plural(&unused, check->unused_vertices, "vertex"));
   summary_check(check);
   statement_say(&all->certificate, true);
-  say_window(all);
+  place_list_say_window(&all->outside, &all->window);
   say_distant(all);
   if (all->features.made) feature_report_say(&all->features);
   say_verified(run, all);
@@ -186,20 +142,6 @@ static void say_check(const session *run, const check_run *all) {
 }
 
 /* ---- JSON ---- */
-
-static void write_places(json *out, const char *key, const place_list *list) {
-  json_open_array(out, key);
-  for (size_t i = 0; i < listed(list); ++i) {
-    json_open_object(out, NULL);
-    json_numbers(out, "place", list->places[i].place, 3);
-    json_number(out, "value", list->places[i].value);
-    json_integer(out, "tet", list->places[i].tet);
-    json_number(out, "curvature_radius", list->places[i].curvature_radius);
-    json_number(out, "crease_angle", crease_angle(list, i));
-    json_close(out);
-  }
-  json_close(out);
-}
 
 static void write_differences(json *out, const session *run, const check_run *all) {
   if (!run->given->certificate) return;
@@ -224,11 +166,11 @@ static void check_json(json *out, const session *run, const void *facts) {
   json_numbers(out, "window", (const double[2]){all->window.min_dihedral, all->window.max_dihedral}, 2);
   json_number(out, "window_volume_length", all->window.volume_length);
   json_integer(out, "outside_window", (int64_t)all->outside.found);
-  write_places(out, "outside_window_places", &all->outside);
+  place_list_write_json(out, "outside_window_places", &all->outside);
   if (all->certificate.check.has_distance) {
     json_number(out, "distant_from", all->certificate.distance_asked);
     json_integer(out, "distant", (int64_t)all->distant.found);
-    write_places(out, "distant_places", &all->distant);
+    place_list_write_json(out, "distant_places", &all->distant);
   }
   feature_report_write_json(out, &all->features);
   json_open_object(out, "seconds");
@@ -240,12 +182,7 @@ static void check_json(json *out, const session *run, const void *facts) {
 
 static laves_result check_steps(session *run, check_run *all) {
   const settings *given = run->given;
-  all->window = laves_options_default();
-  if (given->window.given) {
-    all->window.min_dihedral = given->window.values[0];
-    all->window.max_dihedral = given->window.values[1];
-  }
-  if (given->volume_length >= 0) all->window.volume_length = given->volume_length;
+  all->window = check_window(given);
   const char *write_to = given->write_certificate;
   if (given->check_features && !given->surface)
     return session_fail(run, LAVES_ERROR_OPTION, "--features needs --surface, the solid whose creases the mesh should keep");
@@ -273,13 +210,14 @@ static laves_result check_steps(session *run, check_run *all) {
 }
 
 int command_check(const settings *given) {
+  if (given->stream) return check_stream(given);
   session run;
   check_run all = {0};
   if (!session_open(&run, given)) return laves_result_exit_code(LAVES_ERROR_MEMORY);
   laves_result result = check_steps(&run, &all);
   session_write_json(&run, &result, check_json, &all);
-  free(all.outside.places);
-  free(all.distant.places);
+  place_list_free(&all.outside);
+  place_list_free(&all.distant);
   free(all.features.places);
   laves_mesh_free(all.mesh);
   laves_domain_free(all.surface.domain);

@@ -28,7 +28,8 @@ const command commands[] = {
      "laves check bunny.vtu --surface bunny.obj\n"
      "laves check bunny.vtu --certificate bunny.certificate.json\n"
      "laves check other.msh --window 20,150 --list 10\n"
-     "laves check part.msh --surface part.stl --features\n",
+     "laves check part.msh --surface part.stl --features\n"
+     "laves check huge.vtu --stream --memory 4G\n",
      CHECK, command_check},
     {"info", "INPUT", "say what an input is, what is wrong with it, and what meshing will cost",
      "INPUT is what `laves mesh` takes. Nothing is meshed and nothing is written.", "laves info bunny.obj --tets 1M\n", INFO,
@@ -86,6 +87,9 @@ const option option_rows[] = {
      "edges near by, or a corner, is lost"},
     {"feature-angle", 0, CHECK, IN_CHECK, OPTION_REAL, "DEG", "degrees", false, 1, 179, "40", MEMBER(feature_angle), 0,
      "with --features: what counts as a crease, edges of the surface where its normal turns by more"},
+    {"stream", 0, CHECK, IN_CHECK, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(stream), 0,
+     "leave the mesh in its file, which may be larger than memory: a VTU with raw appended data, as `laves mesh` writes it; "
+     "without certificates, features and the mean edge"},
     {"list", 0, CHECK, IN_CHECK, OPTION_COUNT, "N", "places", false, 0, 100000, "5", MEMBER(list), 0,
      "how many of the worst places to list"},
 

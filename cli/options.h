@@ -46,7 +46,7 @@ typedef struct settings {
   laves_regions regions;
   option_numbers window; /* lowest, highest dihedral angle */
   double volume_length;  /* negative: not given */
-  bool check_features;
+  bool check_features, stream;
   laves_method method;
   double guarantee; /* degrees */
   laves_format format;

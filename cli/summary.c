@@ -86,7 +86,10 @@ void summary_check(const laves_check *check) {
   const char *degree = text_degree();
   text_buffer at_least, at_most;
   say_topology(check);
-  text_say("  volume %.9g, edges %.4g .. %.4g (mean %.4g)", check->volume, check->edge_min, check->edge_max, check->edge_mean);
+  if (isnan(check->edge_mean))
+    text_say("  volume %.9g, edges %.4g .. %.4g", check->volume, check->edge_min, check->edge_max);
+  else
+    text_say("  volume %.9g, edges %.4g .. %.4g (mean %.4g)", check->volume, check->edge_min, check->edge_max, check->edge_mean);
   text_say("  smallest dihedral angle %.2f%s at %s", check->min_dihedral.min, degree,
            text_place(&at_least, check->min_dihedral_place));
   text_say("  largest dihedral angle %.2f%s at %s", check->max_dihedral.max, degree,

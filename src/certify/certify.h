@@ -29,9 +29,12 @@ typedef struct laves__faults {
 laves_result laves__check_boundary(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
                                    laves_check *check, laves__faults *faults, laves_error *error);
 
-/* Angles, ratios, volume and area. */
-laves_result laves__check_shapes(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
-                                 laves_check *check, laves_error *error);
+/* Angles, ratios and volume. */
+laves_result laves__check_shapes(laves_context *context, const laves_mesh *mesh, laves_check *check, laves_error *error);
+
+/* Area of the boundary. */
+laves_result laves__check_area(laves_context *context, const laves_mesh *mesh, const laves__boundary *boundary,
+                               laves_check *check, laves_error *error);
 
 /* The boundary alone. */
 laves_result laves__find_boundary(laves_context *context, const laves_mesh *mesh, laves__boundary *boundary, laves_error *error);
@@ -114,6 +117,10 @@ size_t laves__sample_surface(laves_context *context, const laves__oracle *oracle
  * seen at that scale; INFINITY where it is flat or absent. */
 double laves__curvature_radius(const laves_domain *domain, laves__vec3 point, double reach);
 
+/* Sets the place of a tet, and how bent the surface is there, at the scale of its longest edge. domain: NULL: that is left as it
+ * is. */
+void laves__place_of_tet(const laves__vec3 p[4], const laves_domain *domain, laves_place *place);
+
 /* ---- all of a check ---- */
 
 /* What a check leaves for others to look into. */
@@ -127,6 +134,9 @@ typedef struct laves__survey {
 laves_result laves__survey_mesh(laves_context *context, const laves_mesh *mesh, const laves_domain *domain, laves_check *check,
                                 laves__survey *survey, laves_error *error);
 void laves__survey_free(laves__survey *survey);
+
+/* Whether nothing that a check counts is wrong. */
+bool laves__check_is_valid(const laves_check *check);
 
 /* ---- certificates ---- */
 

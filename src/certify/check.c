@@ -6,7 +6,7 @@
 
 #include "certify/certify.h"
 
-static bool is_valid(const laves_check *check) {
+bool laves__check_is_valid(const laves_check *check) {
   return check->bad_indices == 0 && check->inverted_tets == 0 && check->nonconforming_faces == 0 &&
          check->nonmanifold_edges == 0 && check->nonmanifold_vertices == 0;
 }
@@ -31,12 +31,13 @@ laves_result laves__survey_mesh(laves_context *context, const laves_mesh *mesh, 
   laves__boundary *boundary = &survey->boundary;
   laves_result result = laves__check_topology(context, mesh, check, boundary, error);
   if (result == LAVES_OK) result = laves__check_boundary(context, mesh, boundary, check, &survey->faults, error);
-  if (result == LAVES_OK) result = laves__check_shapes(context, mesh, boundary, check, error);
+  if (result == LAVES_OK) result = laves__check_shapes(context, mesh, check, error);
+  if (result == LAVES_OK) result = laves__check_area(context, mesh, boundary, check, error);
   if (result == LAVES_OK) result = laves__check_edges(context, mesh, check, error);
   if (result == LAVES_OK && domain)
     result = laves__check_distances(context, mesh, boundary, domain, check, &survey->samples, error);
   if (result != LAVES_OK) laves__survey_free(survey);
-  check->valid = result == LAVES_OK && is_valid(check);
+  check->valid = result == LAVES_OK && laves__check_is_valid(check);
   return result;
 }
 

@@ -1,4 +1,4 @@
-/* Whole files in.  The file is opened without waiting (a pipe without a writer would hold us for ever), judged by what was
+/* Files in.  The file is opened without waiting (a pipe without a writer would hold us for ever), judged by what was
  * opened rather than by its name, and read in one piece.
  *
  * Pipes come in pieces, of which nobody knows how many: the block grows, up to a bound, and between pieces we wait a tenth of
@@ -25,6 +25,10 @@ static laves_result fail_errno(laves_error *error, const char *path, const char 
   return laves__fail(error, LAVES_ERROR_INPUT, "%s: cannot %s the file: %s", path, what, reason);
 }
 
+static laves_result fail_shorter(const char *path, laves_error *error) {
+  return laves__fail(error, LAVES_ERROR_INPUT, "%s: the file became shorter while it was read; try again", path);
+}
+
 /* Fills `bytes` from the file, which must hold `length` of them still, piece by piece: a disk may be slow. */
 static laves_result read_all(laves_context *context, int file, const char *path, char *bytes, size_t length, laves_error *error) {
   for (size_t done = 0; done < length;) {
@@ -37,7 +41,7 @@ static laves_result read_all(laves_context *context, int file, const char *path,
       return fail_errno(error, path, "read");
     }
     if (got == 0) {
-      return laves__fail(error, LAVES_ERROR_INPUT, "%s: the file became shorter while it was read; try again", path);
+      return fail_shorter(path, error);
     }
     done += (size_t)got;
   }
@@ -124,23 +128,35 @@ static laves_result read_pipe(laves_context *context, int file, const char *path
 
 /* ---- both ---- */
 
+static laves_result fail_kind(const struct stat *status, const char *path, laves_error *error) {
+  return laves__fail(error, LAVES_ERROR_INPUT, "%s is %s; give a regular file", path, kind_of(status->st_mode));
+}
+
+/* Opens whatever it is; the caller closes it after success only. */
+static laves_result open_path(const char *path, int *file, struct stat *status, laves_error *error) {
+  *file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  if (*file < 0 && errno == ENXIO) return laves__fail(error, LAVES_ERROR_INPUT, "%s is a socket; give a regular file", path);
+  if (*file < 0) return fail_errno(error, path, "open");
+  if (fstat(*file, status) == 0) return LAVES_OK;
+  const laves_result result = fail_errno(error, path, "read");
+  close(*file);
+  return result;
+}
+
 static laves_result read_path(laves_context *context, const char *path, bool may_be_pipe, char **bytes, size_t *length,
                               laves_error *error) {
   *bytes = NULL;
   *length = 0;
-  const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-  if (file < 0 && errno == ENXIO) return laves__fail(error, LAVES_ERROR_INPUT, "%s is a socket; give a regular file", path);
-  if (file < 0) return fail_errno(error, path, "open");
+  int file;
   struct stat status;
-  laves_result result;
-  if (fstat(file, &status) != 0)
-    result = fail_errno(error, path, "read");
-  else if (S_ISREG(status.st_mode))
+  laves_result result = open_path(path, &file, &status, error);
+  if (result != LAVES_OK) return result;
+  if (S_ISREG(status.st_mode))
     result = read_regular(context, file, &status, path, bytes, length, error);
   else if (S_ISFIFO(status.st_mode) && may_be_pipe)
     result = read_pipe(context, file, path, bytes, length, error);
   else
-    result = laves__fail(error, LAVES_ERROR_INPUT, "%s is %s; give a regular file", path, kind_of(status.st_mode));
+    result = fail_kind(&status, path, error);
   close(file);
   return result;
 }
@@ -151,4 +167,35 @@ laves_result laves__file_read(laves_context *context, const char *path, char **b
 
 laves_result laves__input_read(laves_context *context, const char *path, char **bytes, size_t *length, laves_error *error) {
   return read_path(context, path, true, bytes, length, error);
+}
+
+/* ---- ranges ---- */
+
+laves_result laves__ranged_file_open(laves__ranged_file *ranged, const char *path, laves_error *error) {
+  struct stat status;
+  *ranged = (laves__ranged_file){.path = path, .file = -1};
+  laves_result result = open_path(path, &ranged->file, &status, error);
+  if (result != LAVES_OK) return result;
+  ranged->bytes = (uint64_t)status.st_size;
+  if (S_ISREG(status.st_mode)) return LAVES_OK;
+  result = fail_kind(&status, path, error);
+  laves__ranged_file_close(ranged);
+  return result;
+}
+
+laves_result laves__ranged_file_read(const laves__ranged_file *ranged, uint64_t offset, void *bytes, size_t count,
+                                     laves_error *error) {
+  for (size_t done = 0; done < count;) {
+    const ssize_t got = pread(ranged->file, (char *)bytes + done, count - done, (off_t)(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return fail_errno(error, ranged->path, "read");
+    if (got == 0) return fail_shorter(ranged->path, error);
+    done += (size_t)got;
+  }
+  return LAVES_OK;
+}
+
+void laves__ranged_file_close(laves__ranged_file *ranged) {
+  if (ranged->file >= 0) close(ranged->file);
+  ranged->file = -1;
 }

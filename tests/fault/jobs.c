@@ -347,6 +347,32 @@ static laves_result check_mesh(laves_context *context, const job_place *place, c
   return result;
 }
 
+/* The mesh stays in its file. */
+static laves_result check_file(laves_context *context, const job_place *place, const char *what, job_outcome *out) {
+  enum { CAPACITY = 20 };
+  char path[PATH_BYTES];
+  laves_domain *domain = NULL;
+  laves_file_check found;
+  laves_place places[CAPACITY];
+  laves_file_check_options options = laves_file_check_options_default();
+  laves_result result = laves_domain_from_file(context, input_path(place, "cube.off", path), &domain, &out->error);
+  options.domain = domain;
+  options.min_dihedral = 50;
+  options.places = places;
+  options.place_capacity = CAPACITY;
+  if (result == LAVES_OK) result = laves_check_file(context, input_path(place, what, path), &options, &found, &out->error);
+  if (result == LAVES_OK) {
+    take_number(out, found.check.volume);
+    take_bytes(out, found.check.histogram, sizeof found.check.histogram);
+    take_number(out, found.check.from_surface_max);
+    take_number(out, (double)found.outside_window);
+    take_number(out, (double)found.file_faces_missing);
+    take_number(out, places[0].value);
+  }
+  laves_domain_free(domain);
+  return result;
+}
+
 static laves_result check_features(laves_context *context, const job_place *place, const char *what, job_outcome *out) {
   (void)what;
   enum { CAPACITY = 5 };
@@ -471,6 +497,8 @@ const job jobs[] = {
     {"mesh tiling", make_tiling, ""},
     {"estimate", estimate, "cube.obj"},
     {"check a mesh", check_mesh, ""},
+    {"check a file", check_file, "cube.vtu"},
+    {"check a file with triangles", check_file, "tagged.vtu"},
     {"check features", check_features, ""},
     {"certify", certify, "certificate.json"},
     {"read a certificate", read_certificate, "cube.json"},
