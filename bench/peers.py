@@ -20,13 +20,17 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 CREASE_DEG = 40  # what laves takes for sharp by default
 # Solids; the last one is made here, so that it is always there.
 SUBJECTS = [("dragon.obj", None), ("hand_closed.obj", None), ("fandisk.obj", CREASE_DEG), ("bumps", None)]
+QUICK_SUBJECTS = SUBJECTS[2:]
 BUMPS_TRIANGLES = 100000
+CURVE_TRIANGLES = 20000  # of the same shape for the plot, so that small meshes are not all about reading
 TETS, QUICK_TETS = 500000, 50000
 # Tets of the runs that the plot shows, on the bumps.
 CURVE, QUICK_CURVE = (10000, 50000, 200000, 1000000), (10000, 20000, 50000)
 LAVES_CURVE = (4000000, 10000000)  # further, laves alone
-MATCHED = 0.05  # how near the number of tets shall come
-MATCH_RUNS = 8
+SHORT_RUNS, SHORT_SECONDS = 5, 2  # of the plot: runs, until they took so many CPU seconds together
+MATCHED, QUICK_MATCHED = 0.05, 0.15  # how near the number of tets shall come
+MATCH_RUNS, QUICK_MATCH_RUNS = 12, 6
+MATCH_SECONDS = 300  # then the nearest so far has to do
 TIMEOUT = 1800  # seconds for a run
 # Tets per CPU second, laves over peer.
 TARGETS = {"TetGen": 15, "Gmsh HXT": 40, "CGAL": 30, "CGAL, slivers removed": 200}
@@ -75,11 +79,15 @@ def write_msh(points, faces, path):
         file.write("$EndElements\n")
 
 
+def make_bumps(bench, path, triangles):
+    return path if Run([bench.beside("laves-bumps"), str(triangles), path]).code == 0 else None
+
+
 def make_subject(bench, folder, name):
     """The solid as an OFF file in the folder, or None when it is not there."""
     path = os.path.join(folder, os.path.splitext(name)[0] + ".off")
     if name == "bumps":
-        return path if Run([bench.beside("laves-bumps"), str(BUMPS_TRIANGLES), path]).code == 0 else None
+        return make_bumps(bench, path, BUMPS_TRIANGLES)
     source = bench.model(name)
     if source:
         write_off(*read_obj(source), path)
@@ -115,10 +123,13 @@ class Peer:
         return run, mesh if run.code == 0 and os.path.exists(mesh) else None
 
 
-def first_version(command):
-    text = Run(command)
-    found = re.search(r"\d+\.\d+[\d.]*", text.out + text.err)
-    return found.group(0).rstrip(".") if found else ""
+def package_version(package):
+    """The version of upstream that a Debian package holds, empty when it came another way."""
+    if not shutil.which("dpkg-query"):
+        return ""
+    said = Run(["dpkg-query", "-W", "-f", "${Version}", package])
+    found = re.search(r"^(?:.*really)?(\d[\d.]*)", said.out) if said.code == 0 else None
+    return found[1].rstrip(".") if found else ""
 
 
 class TetGen(Peer):
@@ -131,7 +142,7 @@ class TetGen(Peer):
         return None if shutil.which("tetgen") else "package tetgen"
 
     def version(self):
-        return first_version(["tetgen", "-h"])
+        return package_version("tetgen")
 
     def prepare(self, job):
         for self.quality in self.QUALITIES:
@@ -170,7 +181,7 @@ Mesh.SaveAll = 1;
         return None if shutil.which("gmsh") else "package gmsh"
 
     def version(self):
-        return first_version(["gmsh", "--version"])
+        return package_version("gmsh")
 
     def prepare(self, job):
         write_msh(*read_off(os.path.join(job.folder, "surface.off")), os.path.join(job.folder, "surface.msh"))
@@ -196,7 +207,7 @@ class Netgen(Peer):
         return "package python3-netgen"
 
     def version(self):
-        return first_version(["dpkg-query", "-W", "-f", "${Version}", "python3-netgen"]) if shutil.which("dpkg-query") else ""
+        return package_version("python3-netgen")
 
     def command(self, job, size):
         return [self.python, os.path.join(HERE, "peers", "netgen_mesh.py"), "surface.off", f"{size:.9g}", self.output]
@@ -274,26 +285,36 @@ class Job:
         return judged["tets"] if judged else 0
 
 
+def next_size(size, off, few, many, turn):
+    """From what is known of logarithms of (size, tets made over wished): by the cube law until the wish lies between two sizes, then
+    by halving and by the line between them in turn."""
+    if few is None or many is None:
+        return size * math.exp(min(max(off / 3, -1), 1))
+    share = 0.5 if turn % 2 else many[1] / (many[1] - few[1])
+    return math.exp(many[0] + share * (few[0] - many[0]))
+
+
 def match_size(job, peer, first):
-    """The size with which the peer makes about as many tets, or None when it makes none: by the cube law, then by the slope
-    between the last two runs."""
-    size, best, before = first, None, None
-    for _ in range(MATCH_RUNS):
-        _, mesh = peer.run(job, size)
+    """The size with which the peer makes about as many tets, or None when it makes none."""
+    quick = job.bench.options.quick
+    size, best, few, many, spent = first, None, None, None, 0
+    for turn in range(QUICK_MATCH_RUNS if quick else MATCH_RUNS):
+        run, mesh = peer.run(job, size)
+        spent += run.wall
         made = job.count(mesh) if mesh else 0
         if not made:
-            return best[1] if best else None
+            break
         off = math.log(made / job.tets)
         if best is None or abs(off) < best[0]:
             best = (abs(off), size)
-        if best[0] <= MATCHED:
+        if best[0] <= (QUICK_MATCHED if quick else MATCHED) or spent > MATCH_SECONDS:
             break
-        slope = -3
-        if before and size != before[0]:
-            slope = min(max((off - before[1]) / math.log(size / before[0]), -6), -0.7)
-        before = (size, off)
-        size *= math.exp(min(max(-off / slope, -1), 1))
-    return best[1]
+        if off < 0:
+            few = (math.log(size), off)
+        else:
+            many = (math.log(size), off)
+        size = next_size(size, off, few, many, turn)
+    return best[1] if best else None
 
 
 def known_sizes(bench):
@@ -330,6 +351,14 @@ def bounds(job):
     return [min(p[i] for p in points) for i in range(3)], [max(p[i] for p in points) for i in range(3)]
 
 
+def told_if_far(row, job, notes):
+    """Says it where no size was found that makes about as many tets: some peers jump."""
+    if abs(math.log(row["tets"] / job.tets)) > (QUICK_MATCHED if job.bench.options.quick else MATCHED):
+        notes.append(f"{row['program']} on {job.name}: no size was found with which it makes about {job.tets:,} tets; the nearest makes "
+                     f"{row['tets']:,}.")
+        job.bench.say("  " + notes[-1])
+
+
 def timed(job, peer, size, rows, notes):
     """One run of the peer with laves before and after."""
     before, _ = job.laves()
@@ -343,6 +372,7 @@ def timed(job, peer, size, rows, notes):
     ours = job.facts["tets"] / ((before.cpu + after.cpu) / 2)
     rows.append({**row, "setting_size": size, "laves_rate": ours, "times": ours / row["rate"], "before": before.cpu, "after": after.cpu})
     say_row(job.bench, rows[-1])
+    told_if_far(rows[-1], job, notes)
 
 
 def say_row(bench, r):
@@ -360,9 +390,10 @@ def compare(job, peers, rows, notes):
         return
     rows.append(judged_row(job, "laves", run, judged, f"--tets {job.tets}", ""))
     say_row(job.bench, rows[-1])
+    first = {}  # the size from which a second way of the same program sets out
     for peer in peers:
         peer.prepare(job)
-        size = find_size(job, peer, facts["size"])
+        size = first[type(peer)] = find_size(job, peer, first.get(type(peer)) or facts["size"])
         if size is None:
             what = "the boundary of laves's mesh of" if peer.keeps else ""
             notes.append(f"{peer.name} makes no mesh of {what} {job.name}.".replace("  ", " "))
@@ -374,24 +405,35 @@ def compare(job, peers, rows, notes):
 # ---- time against tets ----
 
 
+def again(start):
+    """The run of median CPU time: of several where one is short."""
+    runs = [start()]
+    while len(runs) < SHORT_RUNS and sum(r.cpu for r in runs) < SHORT_SECONDS:
+        runs.append(start())
+    return sorted(runs, key=lambda r: r.cpu)[len(runs) // 2]
+
+
 def measure_curve(bench, folder, peers, rows):
     """On the bumps, with the sizes of the comparison scaled by the cube law; the tets are those that were made."""
-    path = make_subject(bench, folder, "bumps")
+    path = make_bumps(bench, os.path.join(folder, "curve.off"), CURVE_TRIANGLES)
+    if not path:
+        return
     whole = QUICK_TETS if bench.options.quick else TETS
     found = {r["program"]: r["setting_size"] for r in rows if r.get("solid") == "bumps" and r.get("setting_size")}
     for tets in QUICK_CURVE if bench.options.quick else (*CURVE, *LAVES_CURVE):
         job = Job(bench, folder, "bumps", None, path, tets)
-        run, facts = job.laves()
-        if not facts:
+        if not job.facts:
             continue
-        curve_row(bench, rows, "laves", facts["tets"], run)
+        curve_row(bench, rows, "laves", job.facts["tets"], again(lambda job=job: job.laves()[0]))
         for peer in peers if tets not in LAVES_CURVE else []:
             if peer.name not in found:
                 continue
             peer.prepare(job)
-            run, mesh = peer.run(job, found[peer.name] * (whole / tets) ** (1 / 3))
+            size = found[peer.name] * (whole / tets) ** (1 / 3)
+            _, mesh = peer.run(job, size)
             if mesh:
-                curve_row(bench, rows, peer.name, job.count(mesh), run)
+                made = job.count(mesh)
+                curve_row(bench, rows, peer.name, made, again(lambda job=job, peer=peer, size=size: peer.run(job, size)[0]))
 
 
 def curve_row(bench, rows, program, tets, run):
@@ -438,7 +480,7 @@ def measure_peers(bench):
     peers = present_peers(bench, notes)
     tets = QUICK_TETS if bench.options.quick else TETS
     with tempfile.TemporaryDirectory() as folder:
-        for name, crease in SUBJECTS:
+        for name, crease in QUICK_SUBJECTS if bench.options.quick else SUBJECTS:
             path = make_subject(bench, folder, name)
             if not path:
                 notes.append(f"{name} is not there: left out.")

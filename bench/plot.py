@@ -26,24 +26,30 @@ def style():
     return "<style>" + "".join(rules) + "@media (prefers-color-scheme:dark){" + "".join(dark) + "}</style>"
 
 
-def decades(low, high):
-    """Exponents of ten that hold all values between them."""
-    first, last = math.floor(math.log10(low)), math.ceil(math.log10(high))
-    return first, max(last, first + 1)
+def limits(values, room):
+    """Logarithms of the ends of an axis: the values with room round them."""
+    return math.log10(min(values) / room), math.log10(max(values) * room)
 
 
-def tick_text(power):
-    """A power of ten in short words."""
+def ticks(low, high):
+    """Step and power of ten of each line of the grid: powers of ten, and 2 and 5 times those where there are few."""
+    powers = range(math.floor(low), math.ceil(high) + 1)
+    steps = (1, 2, 5) if high - low < 2.2 else (1,)
+    return [(step, p) for p in powers for step in steps if low <= math.log10(step) + p <= high]
+
+
+def tick_text(step, power):
+    """A number in short words."""
     for unit, size in (("G", 9), ("M", 6), ("k", 3)):
         if power >= size:
-            return f"{10 ** (power - size)}{unit}"
-    return f"{10.0 ** power:g}"
+            return f"{step * 10 ** (power - size)}{unit}"
+    return f"{step * 10.0 ** power:g}"
 
 
 class Axes:
     def __init__(self, points):
-        self.x0, self.x1 = (math.log10(f(p[0] for p in points) * by) for f, by in ((min, 0.8), (max, 1.15)))
-        self.y0, self.y1 = decades(min(p[1] for p in points), max(p[1] for p in points))
+        self.x0, self.x1 = limits([p[0] for p in points], 1.2)
+        self.y0, self.y1 = limits([p[1] for p in points], 1.6)
 
     def x(self, tets):
         return LEFT + (math.log10(tets) - self.x0) / (self.x1 - self.x0) * (WIDTH - LEFT - RIGHT)
@@ -51,25 +57,17 @@ class Axes:
     def y(self, seconds):
         return HEIGHT - BOTTOM - (math.log10(seconds) - self.y0) / (self.y1 - self.y0) * (HEIGHT - TOP - BOTTOM)
 
-    def x_ticks(self):
-        """Powers of ten, and 2 and 5 times those where there are few."""
-        powers = range(math.floor(self.x0), math.ceil(self.x1) + 1)
-        steps = (1, 2, 5) if self.x1 - self.x0 < 2.2 else (1,)
-        return [(step * 10 ** p, step, p) for p in powers for step in steps if self.x0 <= math.log10(step * 10.0 ** p) <= self.x1]
-
 
 def grid(axes):
     parts, right, bottom = [], WIDTH - RIGHT, HEIGHT - BOTTOM
-    for power in range(axes.y0, axes.y1 + 1):
-        y = axes.y(10.0 ** power)
+    for step, power in ticks(axes.y0, axes.y1):
+        y = axes.y(step * 10.0 ** power)
         parts.append(f'<line class="grid" x1="{LEFT}" x2="{right}" y1="{y:.1f}" y2="{y:.1f}"/>'
-                     f'<text class="soft" x="{LEFT - 8}" y="{y + 4:.1f}" text-anchor="end">{tick_text(power)}</text>')
-    for tets, step, power in axes.x_ticks():
-        x = axes.x(tets)
-        text = tick_text(power)
-        text = text if step == 1 else text.replace("1", str(step), 1)
+                     f'<text class="soft" x="{LEFT - 8}" y="{y + 4:.1f}" text-anchor="end">{tick_text(step, power)}</text>')
+    for step, power in ticks(axes.x0, axes.x1):
+        x = axes.x(step * 10.0 ** power)
         parts.append(f'<line class="grid" x1="{x:.1f}" x2="{x:.1f}" y1="{TOP}" y2="{bottom}"/>'
-                     f'<text class="soft" x="{x:.1f}" y="{bottom + 19}" text-anchor="middle">{text}</text>')
+                     f'<text class="soft" x="{x:.1f}" y="{bottom + 19}" text-anchor="middle">{tick_text(step, power)}</text>')
     parts.append(f'<text class="soft" x="{(LEFT + right) / 2:.0f}" y="{HEIGHT - 10}" text-anchor="middle">tetrahedra</text>'
                  f'<text class="ink title" x="{LEFT}" y="24">CPU seconds against tetrahedra, one thread, files included</text>')
     return parts

@@ -26,6 +26,7 @@ THREADS_TARGET = 1.8
 FILLING = {"stamp", "mesh", "write"}
 EXPONENT_TARGET = 0.75
 CLOCK = 1e-3  # seconds: shorter times are not fitted
+FITTED = 5  # the largest sizes that are
 
 
 # ---- threads ----
@@ -72,8 +73,9 @@ def size_row(bench, folder, tets):
     if not filled or not plain:
         return None
     made, middle = one["tets"], statistics.median
+    stages = {**one["stages_cpu"], "else": max(min(one["mesh_cpu"]) - sum(one["stages_cpu"].values()), 0)}
     return {"part": "sizes", "tets": int(made), "cpu": middle(one["mesh_cpu"]), "wall": middle(every["mesh_wall"]),
-            "write_cpu": middle(one["write_cpu"]), "write_wall": middle(one["write_wall"]), "stages": one["stages_cpu"],
+            "write_cpu": middle(one["write_cpu"]), "write_wall": middle(one["write_wall"]), "stages": stages,
             "result_bytes": one["result_bytes"] / made, "peak_bytes": every["peak_bytes"] / made, "file_bytes": written / made,
             "fill_wall": filled["fill_wall"], "refill_wall": filled["refill_wall"], "plain_wall": plain["write_wall"]}
 
@@ -92,7 +94,7 @@ def measure_sizes(bench, folder, rows):
 
 
 def stage_points(rows):
-    """For each stage its (tets, CPU seconds); writing is one of them."""
+    """For each stage its (tets, CPU seconds) in the fastest run; what is between stages, and writing, are told like stages."""
     points = {}
     for row in rows:
         for name, seconds in {**row["stages"], "write": row["write_cpu"]}.items():
@@ -101,8 +103,9 @@ def stage_points(rows):
 
 
 def exponent(points):
-    """The slope of seconds against tets on log axes, by least squares; None where fewer than three can be told from nothing."""
-    told = [(math.log(tets), math.log(seconds)) for tets, seconds in points if seconds >= CLOCK]
+    """The slope of seconds against tets on log axes, by least squares over the largest sizes; None where fewer than three of
+    them can be told from nothing."""
+    told = [(math.log(tets), math.log(seconds)) for tets, seconds in points[-FITTED:] if seconds >= CLOCK]
     if len(told) < 3:
         return None
     x, y = (statistics.fmean(p[i] for p in told) for i in (0, 1))
