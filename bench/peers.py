@@ -1,8 +1,8 @@
 """Section `peers` of bench/run: laves beside the tetrahedral meshers that Debian has, on the same solids with as many tetrahedra.
 
-Peers are whole programs that are run, one thread each, and judged from their files by laves-judge like laves itself. TetGen, Gmsh and Netgen
-fill a surface whose triangles they keep: they are given the boundary of the mesh that laves makes, triangles that fit the
-wished size, and the time of making it is not theirs. CGAL makes a surface of its own, from the input, as laves does.
+Peers are whole programs that are run, one thread each, and judged from their files by laves-judge like laves itself. TetGen, Gmsh
+and Netgen fill a surface whose triangles they keep: they are given the boundary of the mesh that laves makes, triangles that fit
+the wished size, and the time of making it is not theirs. CGAL makes a surface of its own, from the input, as laves does.
 """
 
 import json
@@ -498,7 +498,7 @@ def measure_peers(bench):
 
 
 def solid_table(rows):
-    return table(["program", "laves is faster, times", "tets", "thousand tets per CPU s", "CPU s", "wall s", "peak, bytes per tet",
+    return table(["program", "tets per CPU s, laves over it", "tets", "thousand tets per CPU s", "CPU s", "wall s", "peak, bytes per tet",
                   "dihedral angles", "mean radius ratio", "mean distance, % diagonal", "largest", "valid", "setting"],
                  [[f"{r['program']} {r['version']}".rstrip(), f"{r['times']:.1f}" if "times" in r else "1", f"{r['tets']:,}",
                    f"{r['rate'] / 1e3:,.1f}", f"{r['cpu']:.2f}", f"{r['wall']:.2f}", f"{r['peak_bytes'] / r['tets']:,.0f}",

@@ -18,7 +18,8 @@ def class_of(name):
 def style():
     rules = [".page{fill:#ffffff}.ink{fill:#1f2328}.soft{fill:#59636e}.grid{stroke:#d1d9e0;stroke-width:1}"
              "text{font-family:system-ui,-apple-system,'Segoe UI',Helvetica,Arial,sans-serif;font-size:13px}"
-             ".title{font-size:15px;font-weight:600}path{fill:none;stroke-width:2;stroke-linejoin:round}.main{stroke-width:3.5}.bold{font-weight:600}"]
+             ".title{font-size:15px;font-weight:600}"
+             "path{fill:none;stroke-width:2;stroke-linejoin:round}.main{stroke-width:3.5}.bold{font-weight:600}"]
     dark = [".page{fill:#0d1117}.ink{fill:#e6edf3}.soft{fill:#9198a1}.grid{stroke:#30363d}"]
     for name, (light, night) in COLORS.items():
         for rule, color in ((rules, light), (dark, night)):

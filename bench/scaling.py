@@ -1,7 +1,7 @@
 """Section `scaling` of bench/run: how time and memory grow with threads and with tetrahedra, beside what the machine can do at best.
 
-A sphere is meshed from ten thousand tets up, on one thread for the CPU time of each stage and on all for wall time; laves-floor fills as much
-memory and writes as many bytes in the same run.
+A sphere is meshed from ten thousand tets up, on one thread for the CPU time of each stage and on all for wall time; laves-floor fills
+as much memory and writes as many bytes in the same run.
 """
 
 import json

@@ -2,9 +2,10 @@
 //
 //   cgal_mesh SURFACE.off SIZE OUTPUT.mesh [--slivers] [--features DEG]
 //
-// SIZE: bound on the radii of the Delaunay balls of facets and on the circumradii of cells; a tenth of it bounds the distance of facets to the
-// surface. --slivers: removes slivers as CGAL does by default, by perturbing and exuding. --features: keeps edges of the surface whose normals
-// turn by more than that, in degrees. The other criteria are those of CGAL's manual: 25 degrees for facets, radius over edge 3 for cells.
+// SIZE: bound on the radii of the Delaunay balls of facets and on the circumradii of cells; a tenth of it bounds the distance of
+// facets to the surface. --slivers: removes slivers as CGAL does by default, by perturbing and exuding. --features: keeps edges of
+// the surface whose normals turn by more than that, in degrees. The other criteria are those of CGAL's manual: 25 degrees for
+// facets, radius over edge 3 for cells.
 //
 // Licence: CGAL's package Mesh_3 is under GPL-3.0-or-later, so the program built from this file is too. It is a separate program,
 // built by bench/run only where CGAL is installed, run as a child, never linked into laves, and never installed.
