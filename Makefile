@@ -32,7 +32,7 @@ check:
 
 bench: all
 	@tools/setup bench
-	@cmake --build $(BUILD) --parallel $(JOBS) --target laves-measure laves-judge
+	@cmake --build $(BUILD) --parallel $(JOBS) --target laves-measure laves-judge laves-floor laves-bumps
 	@bench/run $(BUILD)/laves --readme
 
 install: all

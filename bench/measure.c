@@ -4,8 +4,9 @@
  * FILE]
  *
  * INPUT: a surface, a script, noise:KIND:SEED:SCALE (tests/fixtures/noise.h), or else an expression; TETS: how many are wished,
- * unless a size is given. CPU seconds are those of the whole process,
- * apart for reading, meshing and writing (an uncompressed VTU); with --repeat all three are lists, one number a run.
+ * unless a size is given. Seconds, of CPU those of the whole process, are told
+ * apart for reading, meshing and writing (an uncompressed VTU), lists of one number a run. Bytes are those of the context: held
+ * by the domain once it is read, by domain and mesh in the end, and the most at once.
  * --judge adds angles, validity and every tet outside the window of angles and volume-length with the radius of curvature
  * there; --distance adds the distances both ways and the places that are further than 0.3 sizes from the surface. */
 #include <laves/laves.h>
@@ -47,7 +48,9 @@ typedef struct request {
 
 /* Seconds of each run. */
 typedef struct times {
-  double read[RUNS_MAX], mesh[RUNS_MAX], mesh_wall[RUNS_MAX], write[RUNS_MAX];
+  double read[RUNS_MAX], mesh[RUNS_MAX], write[RUNS_MAX];
+  double read_wall[RUNS_MAX], mesh_wall[RUNS_MAX], write_wall[RUNS_MAX];
+  double least; /* of mesh */
 } times;
 
 typedef struct run {
@@ -55,7 +58,8 @@ typedef struct run {
   noise noise;
   laves_domain *domain;
   laves_mesh *mesh;
-  laves_report report;
+  size_t empty_bytes, domain_bytes; /* what the context held before and after the input was read */
+  laves_report report;              /* of the run that took the fewest CPU seconds */
   laves_error error;
 } run;
 
@@ -192,11 +196,15 @@ static void describe(const request *q, const run *r, const times *t) {
   print_field("promised_min", r->report.promised_min_dihedral);
   print_field("promised_max", r->report.promised_max_dihedral);
   print_field("stuffed_vertices", (double)r->report.stuffed_vertices);
+  print_field("domain_bytes", (double)r->domain_bytes - (double)r->empty_bytes);
+  print_field("result_bytes", (double)laves_context_bytes(r->context) - (double)r->empty_bytes);
   print_field("peak_bytes", (double)laves_context_peak_bytes(r->context));
   print_list("read_cpu", t->read, q->repeat);
+  print_list("read_wall", t->read_wall, q->repeat);
   print_list("mesh_cpu", t->mesh, q->repeat);
   print_list("mesh_wall", t->mesh_wall, q->repeat);
   print_list("write_cpu", t->write, q->repeat);
+  print_list("write_wall", t->write_wall, q->repeat);
   printf(", \"stages_cpu\": {");
   for (int i = 0; i < r->report.stage_count; i++) {
     printf("%s\"%s\": ", i ? ", " : "", r->report.stages[i].name);
@@ -233,20 +241,29 @@ static laves_result mesh_once(const request *q, run *r, times *t, int turn) {
     options.max_dihedral = q->window[1];
   }
   files.compression = 0;
-  const double start = cpu_seconds();
+  r->empty_bytes = laves_context_bytes(r->context);
+  const double start = cpu_seconds(), start_wall = wall_seconds();
   laves_result result = read_input(r, q->input);
   if (result != LAVES_OK) return result;
-  const double have_domain = cpu_seconds(), wall = wall_seconds();
-  result = laves_generate(r->context, r->domain, &options, &r->mesh, &r->report, &r->error);
+  const double have_domain = cpu_seconds(), have_domain_wall = wall_seconds();
+  r->domain_bytes = laves_context_bytes(r->context);
+  laves_report report;
+  result = laves_generate(r->context, r->domain, &options, &r->mesh, &report, &r->error);
   if (result != LAVES_OK && result != LAVES_TARGET_MISSED) return result;
-  const double have_mesh = cpu_seconds();
+  const double have_mesh = cpu_seconds(), have_mesh_wall = wall_seconds();
   t->read[turn] = have_domain - start;
+  t->read_wall[turn] = have_domain_wall - start_wall;
   t->mesh[turn] = have_mesh - have_domain;
-  t->mesh_wall[turn] = wall_seconds() - wall;
-  t->write[turn] = 0;
+  t->mesh_wall[turn] = have_mesh_wall - have_domain_wall;
+  if (turn == 0 || t->mesh[turn] < t->least) {
+    t->least = t->mesh[turn];
+    r->report = report;
+  }
+  t->write[turn] = t->write_wall[turn] = 0;
   if (!q->output) return LAVES_OK;
   result = laves_mesh_write(r->context, r->mesh, q->output, &files, &r->error);
   t->write[turn] = cpu_seconds() - have_mesh;
+  t->write_wall[turn] = wall_seconds() - have_mesh_wall;
   return result;
 }
 
