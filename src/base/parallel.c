@@ -7,8 +7,8 @@
  *
  * Worker 0 begins alone, and the others are started once the loop has lasted longer than starting them does, so that a small mesh
  * needs no thread at all. Loops whose blocks may be single items are the exception: their items are long, and all begin at once.
- * Threads are POSIX threads that end with the loop. Builds with LAVES_OPENMP take those of OpenMP, which come sooner and then spin
- * between loops: that is processor time for nothing, and on a busy machine wall time, too. */
+ * Threads are POSIX threads that end with the loop. Builds with LAVES_OPENMP take those of OpenMP, which come sooner and then
+ * spin between loops: that is processor time for nothing, and on a busy machine wall time, too. */
 #ifdef __linux__
 #define _GNU_SOURCE /* for sched_getaffinity() */
 #endif
