@@ -1,9 +1,9 @@
 /* SHA-256 by the instructions that x86 processors have for it: ten times as fast as the plain loop.
  *
- * The eight working variables stand in two registers, (a b e f) and (c d g h) from the top down; one instruction does two steps of
- * FIPS 180-4, section 6.2.2, and changes the roles of the registers. The message schedule of section 6.2.2, step 1, is made four
- * words at a time: w holds the last sixteen words in a ring of four registers. Names of the instructions and the order of their
- * operands: Gulley, Gopal, Yap, Feghali, Guilford and Wolrich, "Intel SHA extensions", 2013. */
+ * The eight working variables stand in two registers, (a b e f) and (c d g h) from the top down; one instruction does two steps
+ * of FIPS 180-4, section 6.2.2, and changes the roles of the registers. The message schedule of section 6.2.2, step 1, is made
+ * four words at a time: w holds the last sixteen words in a ring of four registers. Names of the instructions and the order of
+ * their operands: Gulley, Gopal, Yap, Feghali, Guilford and Wolrich, "Intel SHA extensions", 2013. */
 #include "base/sha256.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "certify/certify.h"
-#include "mesh/quality.h"
+#include "mesh/shape_batch.h"
 
 enum {
   BLOCK_TETS = 4096,
@@ -67,33 +67,51 @@ static void tally_add(tally *t, double value, double relative_to, size_t tet) {
   t->squares += shifted * shifted;
 }
 
-static void add_angles(partial *part, const laves__vec3 p[4], size_t tet) {
-  double cosines[6], least = INFINITY, most = -INFINITY;
-  laves__tet_dihedral_cosines(p, cosines);
+static void add_angles(partial *part, const laves__shape_batch *batch, int lane, size_t tet) {
+  double least = INFINITY, most = -INFINITY;
+  for (int i = 0; i < 6; i++)
+    if (!isfinite(batch->cosine[i][lane])) return;
   for (int i = 0; i < 6; i++) {
-    if (!isfinite(cosines[i])) return;
-    const double angle = acos(fmax(-1, fmin(1, cosines[i]))) * DEGREES;
+    const double cosine = batch->cosine[i][lane];
+    const double angle = acos(cosine > 1 ? 1 : cosine < -1 ? -1 : cosine) * DEGREES;
     const int bin = (int)((angle + BIN_SLACK) / (180.0 / LAVES_HISTOGRAM_BINS));
     part->histogram[bin < LAVES_HISTOGRAM_BINS ? bin : LAVES_HISTOGRAM_BINS - 1]++;
-    least = fmin(least, angle);
-    most = fmax(most, angle);
+    if (angle < least) least = angle;
+    if (angle > most) most = angle;
   }
   tally_add(&part->measures[MIN_DIHEDRAL], least, origin[MIN_DIHEDRAL], tet);
   tally_add(&part->measures[MAX_DIHEDRAL], most, origin[MAX_DIHEDRAL], tet);
 }
 
+/* tets[lane]: which tet stands in a lane. */
+static void add_batch(partial *part, laves__shape_batch *batch, const size_t *tets, int count) {
+  laves__shape_batch_measure(batch);
+  for (int lane = 0; lane < count; lane++) {
+    add_angles(part, batch, lane, tets[lane]);
+    tally_add(&part->measures[RADIUS_RATIO], batch->radius_ratio[lane], origin[RADIUS_RATIO], tets[lane]);
+    tally_add(&part->measures[RADIUS_EDGE], batch->radius_edge[lane], origin[RADIUS_EDGE], tets[lane]);
+    tally_add(&part->measures[VOLUME_LENGTH], batch->volume_length[lane], origin[VOLUME_LENGTH], tets[lane]);
+    part->volume += batch->determinant[lane] / 6;
+  }
+}
+
 static void measure_block(const shapes *s, partial *part, size_t begin, size_t end) {
+  laves__shape_batch batch;
+  size_t tets[LAVES__SHAPE_BATCH];
+  int count = 0;
+  memset(&batch.corner, 0, sizeof batch.corner); /* lanes that stay empty are measured, too */
   memset(part, 0, sizeof *part);
   for (int m = 0; m < MEASURES; m++) tally_clear(&part->measures[m]);
   for (size_t t = begin; t < end; t++) {
     laves__vec3 p[4];
     if (!laves__tet_corners(s->mesh, t, p)) continue;
-    add_angles(part, p, t);
-    tally_add(&part->measures[RADIUS_RATIO], laves__tet_radius_ratio(p), origin[RADIUS_RATIO], t);
-    tally_add(&part->measures[RADIUS_EDGE], laves__tet_radius_edge(p), origin[RADIUS_EDGE], t);
-    tally_add(&part->measures[VOLUME_LENGTH], laves__tet_volume_length(p), origin[VOLUME_LENGTH], t);
-    part->volume += v3_det(p[0], p[1], p[2], p[3]) / 6;
+    laves__shape_batch_set(&batch, count, p);
+    tets[count++] = t;
+    if (count < LAVES__SHAPE_BATCH) continue;
+    add_batch(part, &batch, tets, count);
+    count = 0;
   }
+  if (count > 0) add_batch(part, &batch, tets, count);
 }
 
 static void measure_blocks(void *user, size_t begin, size_t end, int worker) {

@@ -4,9 +4,9 @@
  * zero) it is zero, so a kink never spoils the gradient of what is joined to it. */
 #include <string.h>
 
+#include "base/wide.h"
 #include "domain/elementary.h"
 #include "domain/tape.h"
-#include "domain/wide.h"
 
 typedef laves__dual dual;
 

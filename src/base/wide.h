@@ -1,6 +1,6 @@
 /* Loops over batches, compiled for wider vectors where the machine has them. */
-#ifndef LAVES_DOMAIN_WIDE_H
-#define LAVES_DOMAIN_WIDE_H
+#ifndef LAVES_BASE_WIDE_H
+#define LAVES_BASE_WIDE_H
 
 #include <stddef.h> /* for __GLIBC__ */
 
