@@ -100,8 +100,7 @@ typedef struct work {
 static void measure_all(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const work *w = user;
-  for (size_t t = begin; t < end; t++)
-    if (w->layer->tet[t][0] >= 0) w->layer->quality[t] = laves__layer_quality(&w->measure, w->layer, (int32_t)t);
+  laves__measure_tets(&w->measure, w->layer, begin, end, w->layer->quality + begin);
 }
 
 /* Whether a tet is the whole of a wall: all its corners are on the surface, none of them at a crease. */
@@ -494,9 +493,15 @@ cleanup:
 }
 
 size_t laves__improve_outside(const laves__window *window, const laves__layer *layer) {
+  enum { PIECE = 1024 };
   const laves__measure m = laves__measure_of(window);
+  double quality[PIECE];
   size_t count = 0;
-  for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(layer->context, "improve", t, layer->tet_count); t++)
-    count += layer->tet[t][0] >= 0 && laves__layer_quality(&m, layer, (int32_t)t) < 1;
+  for (size_t t = 0; t < layer->tet_count; t += PIECE) {
+    if (laves__cancelled(layer->context, "improve", (double)t / (double)layer->tet_count)) break;
+    const size_t end = t + PIECE < layer->tet_count ? t + PIECE : layer->tet_count;
+    laves__measure_tets(&m, layer, t, end, quality);
+    for (size_t i = t; i < end; i++) count += layer->tet[i][0] >= 0 && quality[i - t] < 1;
+  }
   return count;
 }
