@@ -172,7 +172,7 @@ static laves_result mend_promise(laves__run *r, laves__components *before) {
     const size_t broken = laves__count_broken(r->guarantee, &r->layer, r->forced);
     if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
     if (broken == 0) {
-      r->report->forced_tets = laves__count_broken(r->guarantee, &r->layer, NULL);
+      r->report->forced_tets = r->forced ? laves__count_broken(r->guarantee, &r->layer, NULL) : 0;
       return LAVES_OK;
     }
     const bool crowd = (double)broken > crowded * (double)r->layer.tet_count;

@@ -15,6 +15,10 @@
 #include <float.h>
 #include <string.h>
 
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
+
 #include "domain/surface.h"
 
 enum { BIN_COUNT = 16, BALANCED_DEPTH = 24 };
@@ -26,15 +30,40 @@ static const float box_slack = 0x1p-21f;
 static const float limit_slack = 1.0f + 0x1p-18f;
 static const float far_away = 1e17f;
 
+/* Four lanes, in the vector notation that GCC and Clang share; plain loops are not turned into vector code here. */
+typedef float float4 __attribute__((vector_size(16), aligned(4), may_alias));
+typedef int32_t int4 __attribute__((vector_size(16), aligned(4), may_alias));
+
+/* Lane by lane a < b ? a : b, and a > b ? a : b: one instruction each where there is one. */
+static inline float4 lesser(float4 a, float4 b) {
+#ifdef __SSE__
+  return (float4)_mm_min_ps((__m128)a, (__m128)b);
+#else
+  const int4 less = a < b;
+  return (float4)(((int4)a & less) | ((int4)b & ~less));
+#endif
+}
+
+static inline float4 greater(float4 a, float4 b) {
+#ifdef __SSE__
+  return (float4)_mm_max_ps((__m128)a, (__m128)b);
+#else
+  const int4 more = a > b;
+  return (float4)(((int4)a & more) | ((int4)b & ~more));
+#endif
+}
+
 /* ---- building ---- */
 
+/* Three floats are read as four, so something must stand behind each. */
 typedef struct item {
   float lower[3], upper[3], centre[3];
   uint32_t face;
 } item;
 
+/* The fourth lanes mean nothing. */
 typedef struct box {
-  float lower[3], upper[3];
+  float4 lower, upper;
 } box;
 
 typedef struct range {
@@ -48,14 +77,17 @@ typedef struct builder {
   item *items;
 } builder;
 
-static box box_empty(void) { return (box){{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}}; }
-
-static void box_join(box *b, const float lower[3], const float upper[3]) {
-  for (int k = 0; k < 3; k++) {
-    b->lower[k] = lower[k] < b->lower[k] ? lower[k] : b->lower[k];
-    b->upper[k] = upper[k] > b->upper[k] ? upper[k] : b->upper[k];
-  }
+static inline box box_empty(void) {
+  return (box){{FLT_MAX, FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX, -FLT_MAX}};
 }
+
+static inline void box_join(box *b, float4 lower, float4 upper) {
+  b->lower = lesser(lower, b->lower);
+  b->upper = greater(upper, b->upper);
+}
+
+/* Three floats of an item, and what stands behind them. */
+static inline float4 three(const float x[3]) { return *(const float4 *)x; }
 
 static float half_area(const box *b) {
   const float x = b->upper[0] - b->lower[0], y = b->upper[1] - b->lower[1], z = b->upper[2] - b->lower[2];
@@ -64,7 +96,7 @@ static float half_area(const box *b) {
 
 static box items_box(const item *items, uint32_t begin, uint32_t end) {
   box b = box_empty();
-  for (uint32_t i = begin; i < end; i++) box_join(&b, items[i].lower, items[i].upper);
+  for (uint32_t i = begin; i < end; i++) box_join(&b, three(items[i].lower), three(items[i].upper));
   return b;
 }
 
@@ -75,7 +107,7 @@ static void make_items(laves_context *context, const laves__bvh *bvh, const lave
     box b = box_empty();
     for (int i = 0; i < 3; i++) {
       const laves__vec3 p = points[faces[f][i]];
-      const float q[3] = {(float)(p.x * bvh->scale), (float)(p.y * bvh->scale), (float)(p.z * bvh->scale)};
+      const float4 q = {(float)(p.x * bvh->scale), (float)(p.y * bvh->scale), (float)(p.z * bvh->scale), 0};
       box_join(&b, q, q);
     }
     for (int k = 0; k < 3; k++) {
@@ -100,7 +132,7 @@ static int bin_of(const binning *g, const item *i) {
 /* How to bin a range: along the longest axis of its centres; false when all centres agree. */
 static bool choose_bins(const item *items, uint32_t begin, uint32_t end, binning *g) {
   box c = box_empty();
-  for (uint32_t i = begin; i < end; i++) box_join(&c, items[i].centre, items[i].centre);
+  for (uint32_t i = begin; i < end; i++) box_join(&c, three(items[i].centre), three(items[i].centre));
   int axis = 0;
   for (int k = 1; k < 3; k++)
     if (c.upper[k] - c.lower[k] > c.upper[axis] - c.lower[axis]) axis = k;
@@ -118,7 +150,7 @@ static int best_bin(const item *items, uint32_t begin, uint32_t end, const binni
   for (uint32_t i = begin; i < end; i++) {
     const int b = bin_of(g, &items[i]);
     counts[b]++;
-    box_join(&boxes[b], items[i].lower, items[i].upper);
+    box_join(&boxes[b], three(items[i].lower), three(items[i].upper));
   }
   float below[BIN_COUNT];
   box joined = box_empty();
@@ -206,7 +238,7 @@ static uint32_t make_node(builder *b, range whole, int depth) {
   const int count = part_in_four(b, ranges, depth);
   if (count == 0) return LAVES__NONE;
   laves__bvh_node node;
-  const box nowhere = {{far_away, far_away, far_away}, {far_away, far_away, far_away}};
+  const box nowhere = {{far_away, far_away, far_away, far_away}, {far_away, far_away, far_away, far_away}};
   for (int i = 0; i < 4; i++) {
     set_box(&node, i, i < count ? &ranges[i].bounds : &nowhere);
     node.child[i] = LAVES__LEAF_BIT;
@@ -329,14 +361,12 @@ static inline laves__vec3 closest(const laves__triangle *t, laves__vec3 p, int *
 
 laves__vec3 laves__triangle_closest(const laves__triangle *t, laves__vec3 p, int *on) { return closest(t, p, on); }
 
-double laves__triangle_distance2(const laves__triangle *t, laves__vec3 p) {
+static inline double distance2_to(const laves__triangle *t, laves__vec3 p) {
   int on;
   return v3_norm2(v3_sub(p, closest(t, p, &on)));
 }
 
-/* Four lanes, in the vector notation that GCC and Clang share; plain loops are not turned into vector code here. */
-typedef float float4 __attribute__((vector_size(16), aligned(4), may_alias));
-typedef int32_t int4 __attribute__((vector_size(16), aligned(4), may_alias));
+double laves__triangle_distance2(const laves__triangle *t, laves__vec3 p) { return distance2_to(t, p); }
 
 /* How far x lies outside [centre - half, centre + half], lane by lane. */
 static inline float4 outside(float x, const float4 *centre, const float4 *half) {
@@ -392,7 +422,7 @@ void laves__bvh_nearest(const laves__bvh *bvh, laves__vec3 point, laves__nearest
     }
     const uint32_t first = laves__leaf_first(next.child), last = laves__leaf_last(next.child);
     for (uint32_t slot = first; slot <= last; slot++) {
-      const double d2 = laves__triangle_distance2(&bvh->triangles[slot], point);
+      const double d2 = distance2_to(&bvh->triangles[slot], point);
       if (d2 > best->distance2 || (d2 == best->distance2 && slot >= best->slot)) continue;
       *best = (laves__nearest){d2, slot};
       limit = search_limit(bvh, d2);
@@ -465,16 +495,6 @@ typedef struct ray {
 static float inverse(double x) {
   const float tiny = 1e-12f;
   return 1 / (fabs(x) > (double)tiny ? (float)x : x < 0 ? -tiny : tiny);
-}
-
-static inline float4 lesser(float4 a, float4 b) {
-  const int4 less = a < b;
-  return (float4)(((int4)a & less) | ((int4)b & ~less));
-}
-
-static inline float4 greater(float4 a, float4 b) {
-  const int4 more = a > b;
-  return (float4)(((int4)a & more) | ((int4)b & ~more));
 }
 
 /* Which of the four boxes the ray meets before `farthest`. */

@@ -4,8 +4,8 @@
  *
  * The distance is that to the nearest triangle, and its sign that of the offset from the nearest point along the normal of
  * the feature (face, edge or point) on which this point lies; the normals of edges and points are sums over their faces,
- * weighted by angle [baerentzen2005]. Points of one call start from the triangle of the point before them. A hint is a
- * slot of the tree. */
+ * weighted by angle [baerentzen2005]. Points of one call start from the triangle of the point before them, the first from the
+ * hint that is handed in. A hint is a slot of the tree. */
 #include "domain/features.h"
 #include "domain/surface.h"
 
@@ -172,7 +172,7 @@ static double signed_distance(const laves__surface *s, laves__vec3 p, const lave
 
 static void evaluate(const void *self, size_t count, const laves__vec3 *points, double *phi, uint32_t *hints) {
   const laves__surface *s = self;
-  uint32_t start = LAVES__NO_HINT;
+  uint32_t start = hints && count > 0 ? hints[0] : LAVES__NO_HINT;
   for (size_t i = 0; i < count; i++) {
     const laves__nearest n = nearest_from(s, points[i], INFINITY, start);
     phi[i] = n.slot == LAVES__NONE ? far_distance(points[i]) : signed_distance(s, points[i], &n);

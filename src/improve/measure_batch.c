@@ -1,8 +1,8 @@
 /* The quality of many tetrahedra at once.
  *
- * What laves__quality() does for one tet, step by step and in the same order, so that the digits are the same, in one loop without
- * jumps, which compilers turn into vector code. Tets with edges that are left out, at creases sharper than the window, are few and
- * are measured one by one. See measure.h for the formulas. */
+ * What laves__quality() does for one tet, step by step and in the same order, so that the digits are the same, in one loop
+ * without jumps, which compilers turn into vector code. Tets with edges that are left out, at creases sharper than the window,
+ * are few and are measured one by one. See measure.h for the formulas. */
 #include "base/wide.h"
 #include "improve/measure.h"
 

@@ -1,7 +1,8 @@
 /* Shapes of many tetrahedra at once.
  *
- * What quality.c does for one tet, step by step and in the same order, so that the digits are the same, in one loop without jumps,
- * which compilers turn into vector code. Steps that several measures share are done once. See quality.c for the formulas. */
+ * What quality.c does for one tet, step by step and in the same order, so that the digits are the same, in one loop without
+ * jumps, which compilers turn into vector code. Steps that several measures share are done once. See quality.c for the formulas.
+ */
 #include "mesh/shape_batch.h"
 
 #include "base/wide.h"
@@ -47,5 +48,17 @@ LAVES__WIDE void laves__shape_batch_measure(laves__shape_batch *restrict b) {
     const double mean_square = (u2 + v2 + w2 + q12 + q13 + q23) / 6;
     const double length = SQRT_2 * determinant / (mean_square * sqrt(mean_square));
     b->volume_length[i] = mean_square > 0 ? length : 0;
+  }
+}
+
+LAVES__WIDE void laves__shape_batch_fits(const laves__shape_batch *restrict b, double low, double high,
+                                         double fits[restrict LAVES__SHAPE_BATCH]) {
+  for (int i = 0; i < LAVES__SHAPE_BATCH; i++) {
+    double fit = b->determinant[i] > 0 ? 1 : 0;
+    for (int e = 0; e < 6; e++) {
+      fit = 1 - b->cosine[e][i] >= low ? fit : 0;
+      fit = 1 + b->cosine[e][i] >= high ? fit : 0;
+    }
+    fits[i] = fit;
   }
 }

@@ -24,5 +24,8 @@ static inline void laves__shape_batch_set(laves__shape_batch *b, int lane, const
 
 /* Fills what is out. */
 void laves__shape_batch_measure(laves__shape_batch *batch);
+/* Of a measured batch: fits[lane] is 1 where the tet is positive, 1 - cosine >= low and 1 + cosine >= high for all six, else 0.
+ */
+void laves__shape_batch_fits(const laves__shape_batch *batch, double low, double high, double fits[LAVES__SHAPE_BATCH]);
 
 #endif

@@ -22,21 +22,16 @@ static laves__guarantee promised_window(const laves__guarantee *g) {
   return promised;
 }
 
-/* The same for all tets in a batch, one bit each. A quotient of positive numbers is at least 1 when the first is no less than the
+/* The same for the tets of a batch: how many are. A quotient of positive numbers is at least 1 when the first is no less than the
  * second, so laves__guarantee_margin() need not divide to be compared with 1. */
-static uint64_t find_broken(laves__shape_batch *batch, int count, const laves__guarantee *promised) {
-  const double low = 1 - promised->cos_min, high = 1 + promised->cos_max;
-  uint64_t broken = 0;
+static size_t count_broken_of(laves__shape_batch *batch, int count, const laves__guarantee *promised) {
+  double fits[LAVES__SHAPE_BATCH];
+  size_t broken = 0;
   laves__shape_batch_measure(batch);
-  for (int lane = 0; lane < count; lane++) {
-    bool holds = batch->determinant[lane] > 0;
-    for (int e = 0; e < 6; e++) holds &= (1 - batch->cosine[e][lane] >= low) & (1 + batch->cosine[e][lane] >= high);
-    broken |= (uint64_t)!holds << lane;
-  }
+  laves__shape_batch_fits(batch, 1 - promised->cos_min, 1 + promised->cos_max, fits);
+  for (int lane = 0; lane < count; lane++) broken += fits[lane] == 0;
   return broken;
 }
-
-_Static_assert(LAVES__SHAPE_BATCH <= 64, "a bit for each tet of a batch");
 
 size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced) {
   const laves__guarantee promised = promised_window(guarantee);
@@ -49,10 +44,10 @@ size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer
     laves__layer_points(layer, (int32_t)t, p);
     laves__shape_batch_set(&batch, count++, p);
     if (count < LAVES__SHAPE_BATCH) continue;
-    broken += (size_t)__builtin_popcountll(find_broken(&batch, count, &promised));
+    broken += count_broken_of(&batch, count, &promised);
     count = 0;
   }
-  return broken + (size_t)__builtin_popcountll(find_broken(&batch, count, &promised));
+  return broken + count_broken_of(&batch, count, &promised);
 }
 
 static void zone_cells(laves__lattice *lattice, laves__vec3 centre, int reach) {
