@@ -6,7 +6,7 @@
  * enough to hear of a cancel soon. Worker 0 is the calling thread and the only one that reports progress.
  *
  * Worker 0 begins alone, and the others are started once the loop has lasted longer than starting them does, so that a small mesh
- * needs no thread at all. Loops whose blocks may be single items are the exception: their items are long, and all begin at once.
+ * needs no thread at all. Loops with few and long items, which say so, are the exception: there all begin at once.
  * Threads are POSIX threads that end with the loop. Builds with LAVES_OPENMP take those of OpenMP, which come sooner and then
  * spin between loops: that is processor time for nothing, and on a busy machine wall time, too. */
 #ifdef __linux__
@@ -153,7 +153,7 @@ bool laves__parallel_for(laves_context *context, const char *phase, size_t count
   loop l = {.context = context, .phase = phase, .fn = fn, .user = user, .count = count, .smallest = smallest};
   l.largest = share > smallest ? share : smallest;
   atomic_init(&l.next, 0);
-  if (workers == 1 || smallest > 1) workers = work_alone(&l, workers);
+  if (workers == 1 || min_block > 0) workers = work_alone(&l, workers);
   if (workers > 0) run(&l, workers);
   return !laves__is_cancelled(context);
 }

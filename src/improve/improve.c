@@ -286,7 +286,7 @@ static laves_result run_pass(work *w, size_t *before, laves_error *error) {
     size_t end = first + 1;
     while (end < w->block_count && same_colour(&w->item[w->block[end]], &w->item[w->block[first]])) end++;
     colour_range range = {w, first};
-    if (!laves__parallel_for(w->layer->context, NULL, end - first, 1, mend_blocks, &range)) return laves__fail_cancelled(error);
+    if (!laves__parallel_for(w->layer->context, NULL, end - first, 0, mend_blocks, &range)) return laves__fail_cancelled(error);
     first = end;
   }
   return LAVES_OK;
