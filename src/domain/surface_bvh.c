@@ -278,31 +278,46 @@ static double tree_scale(laves_context *context, const laves__vec3 *points, cons
   return ldexp(1, -exponent);
 }
 
-bool laves__bvh_build(laves_context *context, const laves__vec3 *points, const uint32_t (*faces)[3], size_t face_count,
-                      uint32_t *order, laves__bvh *bvh) {
+/* Gives back what the nodes' array has to spare; it may stay where that fails. */
+static void fit_nodes(laves_context *context, laves__bvh *bvh) {
+  void *fitted = laves__realloc(context, bvh->nodes, bvh->node_capacity, bvh->node_count, sizeof *bvh->nodes);
+  if (!fitted) return;
+  bvh->nodes = fitted;
+  bvh->node_capacity = bvh->node_count;
+}
+
+/* The nodes, and the order of the faces. */
+static bool build_nodes(laves_context *context, const laves__vec3 *points, const uint32_t (*faces)[3], size_t face_count,
+                        uint32_t *order, laves__bvh *bvh) {
   bool done = false;
-  *bvh = (laves__bvh){.scale = tree_scale(context, points, faces, face_count)};
   item *items = laves__alloc(context, face_count, sizeof *items);
-  laves__triangle *triangles = laves__alloc(context, face_count, sizeof *triangles);
-  if (!items || !triangles) goto clean_up;
+  if (!items) return false;
   make_items(context, bvh, points, faces, face_count, items);
   if (laves__is_cancelled(context)) goto clean_up;
   builder b = {context, bvh, items};
   const range whole = {0, (uint32_t)face_count, items_box(items, 0, (uint32_t)face_count)};
   if (make_node(&b, whole, 0) == LAVES__NONE) goto clean_up;
-  for (size_t slot = 0; slot < face_count; slot++) {
-    if (laves__cancelled_at(context, "surface", slot, face_count)) goto clean_up;
-    const uint32_t *f = faces[items[slot].face];
-    order[slot] = items[slot].face;
-    triangles[slot] = laves__triangle_of(points[f[0]], points[f[1]], points[f[2]]);
-  }
-  bvh->triangles = triangles;
-  bvh->count = face_count;
-  triangles = NULL;
+  fit_nodes(context, bvh);
+  for (size_t slot = 0; slot < face_count; slot++) order[slot] = items[slot].face;
   done = true;
 clean_up:
   laves__free(context, items, face_count, sizeof *items);
-  laves__free(context, triangles, face_count, sizeof *triangles);
+  return done;
+}
+
+/* The items are given back before the triangles, which are larger than all else, are made. */
+bool laves__bvh_build(laves_context *context, const laves__vec3 *points, const uint32_t (*faces)[3], size_t face_count,
+                      uint32_t *order, laves__bvh *bvh) {
+  *bvh = (laves__bvh){.scale = tree_scale(context, points, faces, face_count)};
+  bool done = build_nodes(context, points, faces, face_count, order, bvh);
+  if (done) bvh->triangles = laves__alloc(context, face_count, sizeof *bvh->triangles);
+  done = bvh->triangles != NULL;
+  if (done) bvh->count = face_count;
+  for (size_t slot = 0; done && slot < face_count; slot++) {
+    done = !laves__cancelled_at(context, "surface", slot, face_count);
+    const uint32_t *f = faces[order[slot]];
+    bvh->triangles[slot] = laves__triangle_of(points[f[0]], points[f[1]], points[f[2]]);
+  }
   if (!done) laves__bvh_free(context, bvh);
   return done;
 }
