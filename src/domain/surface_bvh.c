@@ -278,12 +278,13 @@ static double tree_scale(laves_context *context, const laves__vec3 *points, cons
   return ldexp(1, -exponent);
 }
 
-/* Gives back what the nodes' array has to spare; it may stay where that fails. */
-static void fit_nodes(laves_context *context, laves__bvh *bvh) {
+/* Gives back what the nodes' array has to spare; false when memory is short. */
+static bool fit_nodes(laves_context *context, laves__bvh *bvh) {
   void *fitted = laves__realloc(context, bvh->nodes, bvh->node_capacity, bvh->node_count, sizeof *bvh->nodes);
-  if (!fitted) return;
+  if (!fitted) return false;
   bvh->nodes = fitted;
   bvh->node_capacity = bvh->node_count;
+  return true;
 }
 
 /* The nodes, and the order of the faces. */
@@ -297,7 +298,7 @@ static bool build_nodes(laves_context *context, const laves__vec3 *points, const
   builder b = {context, bvh, items};
   const range whole = {0, (uint32_t)face_count, items_box(items, 0, (uint32_t)face_count)};
   if (make_node(&b, whole, 0) == LAVES__NONE) goto clean_up;
-  fit_nodes(context, bvh);
+  if (!fit_nodes(context, bvh)) goto clean_up;
   for (size_t slot = 0; slot < face_count; slot++) order[slot] = items[slot].face;
   done = true;
 clean_up:

@@ -77,6 +77,7 @@ static void batch_has_the_same_digits(void **state) {
   static laves__shape_batch batch;
   laves__vec3 p[LAVES__SHAPE_BATCH][4];
   uint32_t random = 7;
+  int seen[2] = {0, 0};
   for (int round = 0; round < 100; round++) {
     for (int lane = 0; lane < LAVES__SHAPE_BATCH; lane++) {
       const double scale = ldexp(1, round % 10 == 9 ? 600 : round % 10);
@@ -99,7 +100,17 @@ static void batch_has_the_same_digits(void **state) {
       assert_true(same(batch.volume_length[lane], laves__tet_volume_length(p[lane])));
       assert_true(same(batch.determinant[lane], v3_det(p[lane][0], p[lane][1], p[lane][2], p[lane][3])));
     }
+    const double low = 0.05, high = 0.2;
+    double fits[LAVES__SHAPE_BATCH];
+    laves__shape_batch_fits(&batch, low, high, fits);
+    for (int lane = 0; lane < LAVES__SHAPE_BATCH; lane++) {
+      bool fit = batch.determinant[lane] > 0;
+      for (int i = 0; i < 6; i++) fit = fit && 1 - batch.cosine[i][lane] >= low && 1 + batch.cosine[i][lane] >= high;
+      assert_true(fits[lane] == (fit ? 1 : 0));
+      seen[fit]++;
+    }
   }
+  assert_true(seen[0] > 100 && seen[1] > 100);
 }
 
 int main(void) {
