@@ -42,7 +42,7 @@ typedef struct settings {
   int64_t tets, vertices;     /* 0: not given */
   option_alignment alignment;
   bool no_improve, ascii, quiet, verbose;
-  bool face_sources, stream;
+  bool face_sources;
   laves_regions regions;
   option_numbers window; /* lowest, highest dihedral angle */
   double volume_length;  /* negative: not given */

@@ -416,9 +416,9 @@ typedef struct laves_options {
   bool face_sources;      ///< boundary faces know the nearest face of the input: laves_mesh_face_sources(); default false
   laves_regions regions;  ///< what tetrahedra are told apart by; default LAVES_REGIONS_NONE
   // Meshes larger than memory (docs/streaming.md).
-  bool streamed;  ///< the mesh does not hold its points and tetrahedra, but makes them when they are read:
-                  ///< laves_mesh_read_points(), laves_mesh_read_tets(), laves_mesh_write(). Memory then grows with the surface.
-                  ///< Not with sizes that vary, nor with regions; default false
+  bool streamed;    ///< the mesh does not hold its points and tetrahedra, but makes them when they are read:
+                    ///< laves_mesh_read_points(), laves_mesh_read_tets(), laves_mesh_write(). Memory then grows with the surface.
+                    ///< Not with sizes that vary, nor with regions; default false
   uint32_t cookie;  ///< set by laves_options_default(), checked by laves_generate()
 } laves_options;
 

@@ -32,7 +32,8 @@ static void count_bricks(void *user, size_t begin, size_t end, int worker) {
   for (size_t slot = begin; slot < end; slot++) {
     laves__brick_base count = {0, 0};
     const int32_t entry = s->lattice->directory[slot];
-    if (entry == LAVES__IN) count = (laves__brick_base){LAVES__BRICK_CELLS * LAVES__C15_SITES, LAVES__BRICK_CELLS * LAVES__C15_TETS};
+    if (entry == LAVES__IN)
+      count = (laves__brick_base){LAVES__BRICK_CELLS * LAVES__C15_SITES, LAVES__BRICK_CELLS * LAVES__C15_TETS};
     for (int inside = 0; entry >= 0 && inside < LAVES__BRICK_CELLS; inside++) {
       const int32_t cell = laves__brick_cell(s->lattice, slot, inside);
       if (cell == LAVES__OUT) continue;

@@ -1,8 +1,8 @@
 /* Points and tets of the tiling's part of a mesh, in ranges, from the labelled lattice.
  *
- * Vertices and tets are in the order of the bricks, which the directory's order is, and in a brick in that of its cells. What comes
- * before a brick is summed up once; with it any range can be made alone, whoever asks and in whatever order, and always has the
- * same bytes: a mesh in memory is the range of all. */
+ * Vertices and tets are in the order of the bricks, which the directory's order is, and in a brick in that of its cells. What
+ * comes before a brick is summed up once; with it any range can be made alone, whoever asks and in whatever order, and always has
+ * the same bytes: a mesh in memory is the range of all. */
 #ifndef LAVES_ASSEMBLE_STAMP_H
 #define LAVES_ASSEMBLE_STAMP_H
 
@@ -40,8 +40,8 @@ laves_result laves__stamps_count(const laves__stamps *s, laves_error *error);
 size_t laves__stamps_vertex_brick(const laves__stamps *s, size_t i);
 size_t laves__stamps_tet_brick(const laves__stamps *s, size_t i);
 
-/* Vertices, or tets, [begin, end) of those of a brick, of which some may lie before or behind it: whichever of the range are its. The
- * first of the range goes to out[0]. */
+/* Vertices, or tets, [begin, end) of those of a brick, of which some may lie before or behind it: whichever of the range are its.
+ * The first of the range goes to out[0]. */
 void laves__stamp_points(const laves__stamps *s, size_t brick, size_t begin, size_t end, laves__vec3 *out);
 void laves__stamp_tets(const laves__stamps *s, size_t brick, size_t begin, size_t end, int32_t (*out)[4]);
 

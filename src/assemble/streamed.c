@@ -1,5 +1,5 @@
-/* What is kept of a run: the lattice with its records, which grow with the surface, and the layer as plain arrays. The interior is
- * one number for each brick. */
+/* What is kept of a run: the lattice with its records, which grow with the surface, and the layer as plain arrays. The interior
+ * is one number for each brick. */
 #include "assemble/streamed.h"
 
 #include <string.h>
@@ -8,7 +8,7 @@ typedef struct streamed {
   laves_context *context;
   laves__lattice lattice;
   laves__stamps stamps;
-  laves__oracle origin; /* all that is left of the domain: where its origin lies */
+  laves__oracle origin;             /* all that is left of the domain: where its origin lies */
   size_t site_count, stamped_count; /* vertices and tets that are stamped */
   size_t layer_vertex_count;        /* of stamps.placed */
   int32_t (*tet)[4];                /* [tet_count] of the layer, behind those that are stamped */

@@ -44,12 +44,13 @@ void laves__lattice_free(laves__lattice *lattice) {
 
 /* The directory slot of the brick that holds a cell, or -1 beyond the directory; *inside is the cell within the brick. */
 static int64_t find_slot(const laves__lattice *lattice, int32_t x, int32_t y, int32_t z, int *inside) {
-  const int32_t dx = x - lattice->lower[0], dy = y - lattice->lower[1], dz = z - lattice->lower[2];
-  if (dx < 0 || dy < 0 || dz < 0) return -1;
-  const int32_t bx = dx / LAVES__BRICK_SIDE, by = dy / LAVES__BRICK_SIDE, bz = dz / LAVES__BRICK_SIDE;
-  if (bx >= lattice->bricks[0] || by >= lattice->bricks[1] || bz >= lattice->bricks[2]) return -1;
-  *inside =
-      (dx % LAVES__BRICK_SIDE) + LAVES__BRICK_SIDE * ((dy % LAVES__BRICK_SIDE) + LAVES__BRICK_SIDE * (dz % LAVES__BRICK_SIDE));
+  /* Without signs: what is below zero becomes very large, and the side of a brick is a power of two. */
+  const uint32_t side = LAVES__BRICK_SIDE;
+  const uint32_t dx = (uint32_t)(x - lattice->lower[0]), dy = (uint32_t)(y - lattice->lower[1]),
+                 dz = (uint32_t)(z - lattice->lower[2]);
+  const uint32_t bx = dx / side, by = dy / side, bz = dz / side;
+  if (bx >= (uint32_t)lattice->bricks[0] || by >= (uint32_t)lattice->bricks[1] || bz >= (uint32_t)lattice->bricks[2]) return -1;
+  *inside = (int)((dx % side) + side * ((dy % side) + side * (dz % side)));
   return bx + (int64_t)lattice->bricks[0] * (by + (int64_t)lattice->bricks[1] * bz);
 }
 

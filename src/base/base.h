@@ -89,7 +89,8 @@ laves_result laves__fail_room(const laves_context *context, double bytes, const 
  * (0 .. laves__workers()-1) gets which may vary from run to run, so results must be written to places that depend on the index
  * alone. Between blocks the calling thread reports progress under `phase` (NULL: silently); after a cancel the remaining blocks
  * are skipped and the function returns false. Blocks are made to take some milliseconds, so that a cancel is soon heard where
- * min_block items take no longer. */
+ * min_block items take no longer. min_block 0: as 1, of a loop whose items may each take longer than starting a thread; all
+ * workers begin at once, and else only when the loop has lasted a while. */
 typedef void laves__range_fn(void *user, size_t begin, size_t end, int worker);
 bool laves__parallel_for(laves_context *context, const char *phase, size_t count, size_t min_block, laves__range_fn *fn,
                          void *user);

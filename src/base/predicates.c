@@ -108,6 +108,23 @@ static int exact_sign(laves__vec3 a, laves__vec3 b, laves__vec3 c, laves__vec3 d
   return determinant.terms[determinant.count - 1] > 0 ? 1 : -1;
 }
 
+laves__plane laves__plane_of(laves__vec3 a, laves__vec3 b, laves__vec3 c) {
+  const laves__vec3 u = v3_sub(b, a), v = v3_sub(c, a);
+  const double yz = u.y * v.z, zy = u.z * v.y, zx = u.z * v.x, xz = u.x * v.z, xy = u.x * v.y, yx = u.y * v.x;
+  return (laves__plane){a, b, c, v3(yz - zy, zx - xz, xy - yx),
+                        v3(fabs(yz) + fabs(zy), fabs(zx) + fabs(xz), fabs(xy) + fabs(yx))};
+}
+
+/* The determinant expanded by its last row in the place of its first: the same steps, so the same bound. */
+int laves__plane_side(const laves__plane *p, laves__vec3 d) {
+  const laves__vec3 w = v3_sub(d, p->a);
+  const double determinant = w.x * p->normal.x + w.y * p->normal.y + w.z * p->normal.z;
+  const double bound = FILTER_BOUND * (fabs(w.x) * p->permanent.x + fabs(w.y) * p->permanent.y + fabs(w.z) * p->permanent.z);
+  if (determinant > bound) return 1;
+  if (-determinant > bound) return -1;
+  return exact_sign(p->a, p->b, p->c, d);
+}
+
 int laves__orient3d(laves__vec3 a, laves__vec3 b, laves__vec3 c, laves__vec3 d) {
   const laves__vec3 u = v3_sub(b, a), v = v3_sub(c, a), w = v3_sub(d, a);
   const double yz = v.y * w.z, zy = v.z * w.y;

@@ -21,4 +21,10 @@ void laves__sha256_text(const unsigned char digest[LAVES__SHA256_BYTES], char te
 /* The same of a block of bytes, such as a file; false when cancelled. */
 bool laves__sha256_of(laves_context *context, const void *bytes, size_t count, char text[65]);
 
+/* One function, two ways: takes in whole blocks of 64 bytes. The fast one does nothing and says so where the processor is not
+ * made for it. For sha256.c and its test. */
+extern const uint32_t laves__sha256_constants[64];
+void laves__sha256_compress_plain(uint32_t state[8], const unsigned char *bytes, size_t blocks);
+bool laves__sha256_compress_fast(uint32_t state[8], const unsigned char *bytes, size_t blocks);
+
 #endif

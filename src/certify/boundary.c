@@ -1,14 +1,7 @@
-/* Reading tets of an untrusted mesh, and its boundary where nothing else is wanted. */
+/* The boundary of an untrusted mesh, where nothing else is wanted. */
 #include "base/predicates.h"
 #include "certify/certify.h"
 #include "mesh/face_match.h"
-
-bool laves__tet_corners(const laves_mesh *mesh, size_t tet, laves__vec3 corners[4]) {
-  const int32_t *t = mesh->tets[tet];
-  if (!laves__tet_usable(t, mesh->vertex_count)) return false;
-  for (int i = 0; i < 4; i++) corners[i] = mesh->points[t[i]];
-  return v3_finite(corners[0]) && v3_finite(corners[1]) && v3_finite(corners[2]) && v3_finite(corners[3]);
-}
 
 void laves__boundary_free(laves__boundary *boundary) {
   if (boundary->context) laves__free(boundary->context, boundary->faces, boundary->count, sizeof *boundary->faces);

@@ -48,7 +48,11 @@ static double nearest2(laves__vec3 a, laves__vec3 b, laves__vec3 c) {
   return v3_norm2(v3_add(a, v3_add(v3_scale(ab, vb / sum), v3_scale(ac, vc / sum))));
 }
 
-static double outside(double x, double lower, double upper) { return x < lower ? lower - x : x > upper ? x - upper : 0; }
+/* Zero inside; in a form without jumps, as their way can't be foretold. */
+static double outside(double x, double lower, double upper) {
+  const double below = lower - x, above = x - upper, most = below > above ? below : above;
+  return most > 0 ? most : 0;
+}
 
 static double box_distance2(const laves__box3 *b, laves__vec3 p) {
   return v3_norm2(
@@ -186,32 +190,44 @@ void laves__boundary_tree_free(laves__boundary_tree *tree) {
 
 /* ---- queries ---- */
 
-static double leaf_nearest2(const laves__boundary_tree *tree, size_t leaf, laves__vec3 p, double best, float *edge) {
+static double leaf_nearest2(const laves__boundary_tree *tree, size_t leaf, laves__vec3 p, double best, float *edge,
+                            size_t *near) {
   for (size_t i = leaf * LEAF_TRIANGLES; i < (leaf + 1) * LEAF_TRIANGLES && i < tree->triangle_count; i++) {
     const triangle *t = &tree->triangles[i];
     const double distance2 = nearest2(v3_sub(t->a, p), v3_sub(t->b, p), v3_sub(t->c, p));
     if (!(distance2 < best)) continue;
     best = distance2;
     *edge = t->edge;
+    *near = i;
   }
   return best;
 }
 
-double laves__boundary_tree_distance(const laves__boundary_tree *tree, laves__vec3 point, double bound, float *edge) {
+/* A bound, from wherever it is, only leaves boxes out: the order in which the others are seen, and so which of several triangles
+ * as near is the one, stays the same. */
+double laves__boundary_tree_distance(const laves__boundary_tree *tree, laves__vec3 point, double bound, float *edge,
+                                     size_t *near) {
   struct {
     size_t node;
     double distance2;
   } stack[STACK];
   int depth = 0;
-  double best = bound * bound * (1 + BOUND_SLACK);
+  double best = bound * bound;
   if (tree->triangle_count == 0) return INFINITY;
+  if (*near < tree->triangle_count) {
+    float any_edge;
+    size_t any;
+    const double known = leaf_nearest2(tree, *near / LEAF_TRIANGLES, point, INFINITY, &any_edge, &any);
+    if (known > 0) best = fmin(best, known); /* nothing is below zero */
+  }
+  best *= 1 + BOUND_SLACK;
   stack[depth].node = 1;
   stack[depth++].distance2 = 0;
   while (depth > 0) {
     const size_t node = stack[--depth].node;
     if (stack[depth].distance2 >= best) continue;
     if (node >= tree->leaf_count) {
-      best = leaf_nearest2(tree, node - tree->leaf_count, point, best, edge);
+      best = leaf_nearest2(tree, node - tree->leaf_count, point, best, edge, near);
       continue;
     }
     const double low = box_distance2(&tree->boxes[2 * node], point), high = box_distance2(&tree->boxes[2 * node + 1], point);

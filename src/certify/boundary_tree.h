@@ -16,8 +16,11 @@ void laves__boundary_tree_free(laves__boundary_tree *tree);
 
 /* The distance from a point (relative to `origin`) to the nearest triangle; INFINITY when there is none. The answer must be
  * known not to exceed `bound`, which may be INFINITY. *edge: its local edge; left as it is when the bound itself is the answer.
- */
-double laves__boundary_tree_distance(const laves__boundary_tree *tree, laves__vec3 point, double bound, float *edge);
+ * *near: in: LAVES__NO_TRIANGLE, or what an earlier call gave for a point near by, which makes the search quick and does not
+ * change its answer; out: which triangle it was, as the next call may be told. */
+#define LAVES__NO_TRIANGLE SIZE_MAX
+double laves__boundary_tree_distance(const laves__boundary_tree *tree, laves__vec3 point, double bound, float *edge,
+                                     size_t *near);
 
 /* The least and the greatest level of all edges. */
 void laves__boundary_tree_levels(const laves__boundary_tree *tree, int *least, int *greatest);

@@ -3,6 +3,7 @@
 #define LAVES_CERTIFY_CERTIFY_H
 
 #include "domain/oracle.h"
+#include "mesh/face_match.h"
 #include "mesh/mesh.h"
 
 /* A boundary as recomputed from the tets: triangles outwards, in the order of their tets. */
@@ -159,7 +160,12 @@ laves_result laves__list_exceptions(laves_context *context, const laves_mesh *me
 /* ---- tets and boundaries ---- */
 
 /* The corners of a tet; false when it has none that can be measured (bad indices, or points that are not finite). */
-bool laves__tet_corners(const laves_mesh *mesh, size_t tet, laves__vec3 corners[4]);
+static inline bool laves__tet_corners(const laves_mesh *mesh, size_t tet, laves__vec3 corners[4]) {
+  const int32_t *t = mesh->tets[tet];
+  if (!laves__tet_usable(t, mesh->vertex_count)) return false;
+  for (int i = 0; i < 4; i++) corners[i] = mesh->points[t[i]];
+  return v3_finite(corners[0]) && v3_finite(corners[1]) && v3_finite(corners[2]) && v3_finite(corners[3]);
+}
 
 /* ---- sorting ---- */
 

@@ -232,7 +232,8 @@ static void nearest_chunks(void *user, size_t begin, size_t end, int worker) {
   laves__sample *samples = m->samples->items + m->samples->boundary_count;
   const size_t count = m->samples->count - m->samples->boundary_count;
   (void)worker;
-  for (size_t chunk = begin; chunk < end; chunk++)
+  for (size_t chunk = begin; chunk < end; chunk++) {
+    size_t near = LAVES__NO_TRIANGLE;
     for (size_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < count; i++) {
       const laves__vec3 local = v3_sub(samples[i].point, m->oracle->origin);
       double bound = INFINITY;
@@ -240,8 +241,9 @@ static void nearest_chunks(void *user, size_t begin, size_t end, int worker) {
         bound = samples[i - 1].distance + v3_distance(samples[i - 1].point, samples[i].point);
         samples[i].edge = samples[i - 1].edge;
       }
-      samples[i].distance = laves__boundary_tree_distance(m->tree, local, bound, &samples[i].edge);
+      samples[i].distance = laves__boundary_tree_distance(m->tree, local, bound, &samples[i].edge, &near);
     }
+  }
 }
 
 /* The area of the boundary, and what it would be if it were stretched until all local edges were as long as the mean. */

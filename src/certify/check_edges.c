@@ -17,30 +17,47 @@ typedef struct partial {
 
 typedef struct edges {
   const laves_mesh *mesh;
+  bool alone;              /* one worker: cursors need no locked instructions, which cost more than all else */
   _Atomic uint64_t *start; /* [vertex_count + 1] cursor, then end, of each bucket */
   uint32_t *ends;
   partial *partials;
 } edges;
 
-static int32_t lower(const int32_t tet[4], int edge) {
-  const int32_t a = tet[laves__tet_edge[edge][0]], b = tet[laves__tet_edge[edge][1]];
-  return a < b ? a : b;
+static void order_two(int32_t *a, int32_t *b) {
+  const int32_t low = *a < *b ? *a : *b, high = *a < *b ? *b : *a;
+  *a = low;
+  *b = high;
 }
 
-static int32_t upper(const int32_t tet[4], int edge) {
-  const int32_t a = tet[laves__tet_edge[edge][0]], b = tet[laves__tet_edge[edge][1]];
-  return a < b ? b : a;
+/* The corners ascending: the first is the lower end of three edges, the second of two, the third of one. */
+static void sort_corners(const int32_t tet[4], int32_t c[4]) {
+  for (int i = 0; i < 4; i++) c[i] = tet[i];
+  order_two(&c[0], &c[1]);
+  order_two(&c[2], &c[3]);
+  order_two(&c[0], &c[2]);
+  order_two(&c[1], &c[3]);
+  order_two(&c[1], &c[2]);
 }
 
 static uint64_t start_of(const edges *e, size_t vertex) { return atomic_load_explicit(&e->start[vertex], memory_order_relaxed); }
+
+/* Adds to a cursor; returns what it was. */
+static uint64_t move(edges *e, int32_t vertex, uint64_t by) {
+  if (!e->alone) return atomic_fetch_add_explicit(&e->start[vertex], by, memory_order_relaxed);
+  const uint64_t before = start_of(e, (size_t)vertex);
+  atomic_store_explicit(&e->start[vertex], before + by, memory_order_relaxed);
+  return before;
+}
 
 static void count_block(void *user, size_t begin, size_t end, int worker) {
   edges *e = user;
   (void)worker;
   for (size_t t = begin; t < end; t++) {
     const int32_t *tet = e->mesh->tets[t];
+    int32_t c[4];
     if (!laves__tet_usable(tet, e->mesh->vertex_count)) continue;
-    for (int i = 0; i < 6; i++) atomic_fetch_add_explicit(&e->start[lower(tet, i)], 1, memory_order_relaxed);
+    sort_corners(tet, c);
+    for (int i = 0; i < 3; i++) move(e, c[i], 3 - (uint64_t)i);
   }
 }
 
@@ -51,10 +68,12 @@ static void fill_block(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   for (size_t t = begin; t < end; t++) {
     const int32_t *tet = e->mesh->tets[t];
+    int32_t c[4];
     if (!laves__tet_usable(tet, e->mesh->vertex_count)) continue;
-    for (int i = 0; i < 6; i++) {
-      const uint64_t at = atomic_fetch_sub_explicit(&e->start[lower(tet, i)], 1, memory_order_relaxed) - 1;
-      e->ends[at] = (uint32_t)upper(tet, i);
+    sort_corners(tet, c);
+    for (int i = 0; i < 3; i++) {
+      const uint64_t ends = 3 - (uint64_t)i, at = move(e, c[i], 0 - ends) - ends;
+      for (int k = i + 1; k < 4; k++) e->ends[at + (uint64_t)(k - i - 1)] = (uint32_t)c[k];
     }
   }
 }
@@ -106,8 +125,8 @@ static void measure_bucket(edges *e, size_t vertex, partial *part) {
   for (size_t i = 0; i < kept; i++) {
     const double length = v3_distance(e->mesh->points[vertex], e->mesh->points[ends[i]]);
     if (!isfinite(length)) continue;
-    part->min = fmin(part->min, length);
-    part->max = fmax(part->max, length);
+    if (length < part->min) part->min = length;
+    if (length > part->max) part->max = length;
     part->sum += length;
     part->count++;
   }
@@ -151,7 +170,7 @@ laves_result laves__check_edges(laves_context *context, const laves_mesh *mesh, 
   const size_t block_count = (mesh->vertex_count + BLOCK_VERTICES - 1) / BLOCK_VERTICES;
   laves_result result = LAVES_OK;
   uint64_t end_count = 0;
-  edges e = {.mesh = mesh};
+  edges e = {.mesh = mesh, .alone = laves__workers(context) == 1};
   e.start = laves__alloc_zeroed(context, mesh->vertex_count + 1, sizeof *e.start);
   e.partials = laves__alloc(context, block_count, sizeof *e.partials);
   if (!e.start || !e.partials) {

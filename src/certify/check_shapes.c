@@ -21,14 +21,17 @@ typedef struct areas {
 
 static void measure_blocks(void *user, size_t begin, size_t end, int worker) {
   const shapes *s = user;
+  laves__shape_queue queue;
+  laves__shape_queue_clear(&queue); /* lanes that stay empty are measured, too */
   (void)worker;
   for (size_t b = begin; b < end; b++) {
     const size_t first = b * LAVES__TALLY_TETS, last = first + LAVES__TALLY_TETS;
     laves__shape_tally_clear(&s->partials[b]);
     for (size_t t = first; t < last && t < s->mesh->tet_count; t++) {
       laves__vec3 p[4];
-      if (laves__tet_corners(s->mesh, t, p)) laves__shape_tally_add(&s->partials[b], p, t);
+      if (laves__tet_corners(s->mesh, t, p)) laves__shape_tally_add(&s->partials[b], &queue, p, t);
     }
+    laves__shape_tally_flush(&s->partials[b], &queue);
   }
 }
 

@@ -132,7 +132,7 @@ static void clear_block(block *b) {
   laves__shape_tally_clear(&b->tally);
 }
 
-static void measure_tet(const sweep *s, block *b, size_t t) {
+static void measure_tet(const sweep *s, block *b, laves__shape_queue *queue, size_t t) {
   const laves__vec3 *p = s->corners[t];
   double value;
   const double det = v3_det(p[0], p[1], p[2], p[3]);
@@ -148,7 +148,7 @@ static void measure_tet(const sweep *s, block *b, size_t t) {
   b->inverted += s->orientation[t] <= 0;
   if (s->measured) return;
   s->badness[t] = laves__window_badness(&s->window, p, &value);
-  laves__shape_tally_add(&b->tally, p, (size_t)s->first + t);
+  laves__shape_tally_add(&b->tally, queue, p, (size_t)s->first + t);
   measure_edges(b, p);
 }
 
@@ -181,11 +181,14 @@ static void list_faces(const sweep *s, block *b, size_t begin, size_t end, laves
 
 static void measure_blocks(void *user, size_t begin, size_t end, int worker) {
   const sweep *s = user;
+  laves__shape_queue queue;
+  laves__shape_queue_clear(&queue);
   (void)worker;
   for (size_t b = begin; b < end; b++) {
     const size_t first = b * LAVES__TALLY_TETS, last = block_end(s, b);
     clear_block(&s->blocks[b]);
-    for (size_t t = first; t < last; t++) measure_tet(s, &s->blocks[b], t);
+    for (size_t t = first; t < last; t++) measure_tet(s, &s->blocks[b], &queue, t);
+    laves__shape_tally_flush(&s->blocks[b].tally, &queue);
     list_faces(s, &s->blocks[b], first, last, s->records + b * BLOCK_FACES);
   }
 }

@@ -12,8 +12,9 @@
  * Six lengths determine a tet but for its mirror image, and all tiles are their own. The shortest edge of each is one
  * of 8, or of 12, so a tet names the unit that would make it a tile. Units of a graded mesh differ by powers of two: such votes
  * are alike. What the most name is found by a vote in which unlike votes cancel, first within fixed blocks and then
- * between them, in order; it finds whatever more than half have. Then those of that unit, times any power of two, are
- * counted, and the power that has the most tiles gives the size.
+ * between them, in order; it finds whatever more than half have. Those of that unit, times any power of two, are counted, and the
+ * power that has the most tiles gives the size. The unit is nearly always that of the first block, so tets are counted as they
+ * vote, and a second time only when another unit won.
  *
  * Tolerance, on squares of edges, relative: LEAST_TOLERANCE, or what the rounding of coordinates far from the origin makes of
  * edges this short, where that is more. */
@@ -122,7 +123,7 @@ static tile tile_of(const shapes *s, size_t tet) {
   if (!laves__tet_corners(s->mesh, tet, p)) return (tile){0, false};
   for (int i = 0; i < 6; i++) {
     squares[i] = v3_norm2(v3_sub(p[laves__tet_edge[i][1]], p[laves__tet_edge[i][0]]));
-    least = fmin(least, squares[i]);
+    if (squares[i] < least) least = squares[i];
   }
   if (!(least > 0) || !isfinite(least)) return (tile){0, false};
   const double tolerance = 2 * tolerance_of(s->largest, least);
@@ -136,6 +137,7 @@ static bool is_alike(const shapes *s, double unit2, double base2, int *level) {
   const double ratio = unit2 / base2;
   int exponent;
   *level = 0;
+  if (ratio >= 0.5 && ratio < 2) return close_to(unit2, base2, unit_tolerance(s, base2)); /* mostly; what follows is dear */
   if (!(ratio > 0) || !isfinite(2 * ratio)) return false;
   frexp(2 * ratio, &exponent); /* in [2^(e-1), 2^e): a power of four between its half and its double */
   *level = (exponent - 1) >> 1;
@@ -155,33 +157,29 @@ static void cast(const shapes *s, vote *into, vote more) {
     *into = (vote){more.unit2, more.weight - into->weight};
 }
 
-static void vote_blocks(void *user, size_t begin, size_t end, int worker) {
-  const shapes *s = user;
-  (void)worker;
-  for (size_t b = begin; b < end; b++) {
-    s->votes[b] = (vote){0};
-    for (size_t t = b * BLOCK_TETS; t < (b + 1) * BLOCK_TETS && t < s->mesh->tet_count; t++) {
-      const tile it = tile_of(s, t);
-      if (it.unit2 > 0) cast(s, &s->votes[b], (vote){it.unit2, 1});
-    }
+static void count(const shapes *s, tile it, tally *into) {
+  int level;
+  if (!is_alike(s, it.unit2, s->unit2, &level) || abs(level) > LEVEL_MOST) return;
+  into->c15 += !it.is_bcc;
+  into->bcc += it.is_bcc;
+  into->levels[LEVEL_MOST + level]++;
+}
+
+/* Votes, and counts those of the unit that is likely to win, where one is known. */
+static void look_at_block(const shapes *s, size_t b) {
+  s->votes[b] = (vote){0};
+  s->tallies[b] = (tally){0};
+  for (size_t t = b * BLOCK_TETS; t < (b + 1) * BLOCK_TETS && t < s->mesh->tet_count; t++) {
+    const tile it = tile_of(s, t);
+    if (!(it.unit2 > 0)) continue;
+    cast(s, &s->votes[b], (vote){it.unit2, 1});
+    if (s->unit2 > 0) count(s, it, &s->tallies[b]);
   }
 }
 
-static void count_blocks(void *user, size_t begin, size_t end, int worker) {
-  const shapes *s = user;
+static void look_at_blocks(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
-  for (size_t b = begin; b < end; b++) {
-    tally *count = &s->tallies[b];
-    *count = (tally){0};
-    for (size_t t = b * BLOCK_TETS; t < (b + 1) * BLOCK_TETS && t < s->mesh->tet_count; t++) {
-      const tile it = tile_of(s, t);
-      int level;
-      if (!(it.unit2 > 0) || !is_alike(s, it.unit2, s->unit2, &level) || abs(level) > LEVEL_MOST) continue;
-      count->c15 += !it.is_bcc;
-      count->bcc += it.is_bcc;
-      count->levels[LEVEL_MOST + level]++;
-    }
-  }
+  for (size_t b = begin; b < end; b++) look_at_block(user, b);
 }
 
 /* Adds up; the size is that of the most tiles, the smaller of two that have as many. */
@@ -224,12 +222,15 @@ laves_result laves__find_tiles(laves_context *context, const laves_mesh *mesh, l
     result = laves__fail_memory(context, error);
     goto clean_up;
   }
-  bool complete = laves__parallel_for(context, "certify", blocks, 1, vote_blocks, &s);
+  if (blocks > 0) look_at_block(&s, 0);
+  s.unit2 = blocks > 0 ? s.votes[0].unit2 : 0;
+  bool complete = laves__parallel_for(context, "certify", blocks, 1, look_at_blocks, &s);
   for (size_t b = 0; complete && b < blocks; b++) cast(&s, &winner, s.votes[b]);
   certificate->lattice_tolerance = LEAST_TOLERANCE;
   if (winner.weight > 0) {
+    const bool foreseen = winner.unit2 == s.unit2;
     s.unit2 = winner.unit2;
-    complete = complete && laves__parallel_for(context, "certify", blocks, 1, count_blocks, &s);
+    if (!foreseen) complete = complete && laves__parallel_for(context, "certify", blocks, 1, look_at_blocks, &s);
     if (complete) state_tiles(&s, blocks, certificate);
   }
   if (!complete) result = laves__fail_cancelled(error);

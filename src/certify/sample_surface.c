@@ -69,26 +69,42 @@ static void evaluate_nodes(const search *s, block *b) {
 /* The largest change of phi along an edge of the grid. */
 static double steepest(const block *b) {
   double most = 0;
-  for (int i = 0; i < BLOCK_NODES; i++) {
-    if (i % NODES < CELLS) most = fmax(most, fabs(b->phi[i + 1] - b->phi[i]));
-    if (i / NODES % NODES < CELLS) most = fmax(most, fabs(b->phi[i + NODES] - b->phi[i]));
-    if (i / (NODES * NODES) < CELLS) most = fmax(most, fabs(b->phi[i + NODES * NODES] - b->phi[i]));
-  }
+  for (int z = 0; z < NODES; z++)
+    for (int y = 0; y < NODES; y++)
+      for (int x = 0; x < NODES; x++) {
+        const double *phi = &b->phi[node_at(x, y, z)];
+        const double along_x = x < CELLS ? fabs(phi[1] - phi[0]) : 0, along_y = y < CELLS ? fabs(phi[NODES] - phi[0]) : 0;
+        const double along_z = z < CELLS ? fabs(phi[NODES * NODES] - phi[0]) : 0;
+        if (along_x > most) most = along_x;
+        if (along_y > most) most = along_y;
+        if (along_z > most) most = along_z;
+      }
   return most;
 }
 
+/* What is known of some neighbouring nodes: how many are inside, and the least |phi|. */
+typedef struct summary {
+  double least;
+  int inside, count;
+} summary;
+
+static summary join(summary a, summary b) {
+  return (summary){a.least < b.least ? a.least : b.least, a.inside + b.inside, a.count + b.count};
+}
+
+/* The eight corners of each cell, two at a time along each axis in turn: a third of the steps that corner by corner takes. */
 static void find_kinds(block *b) {
   const double near = SHEET_NEAR * steepest(b);
+  summary at[BLOCK_NODES];
+  for (int i = 0; i < BLOCK_NODES; i++) {
+    const double phi = b->phi[i];
+    at[i] = (summary){isnan(phi) ? INFINITY : fabs(phi), phi < 0, 1};
+  }
+  for (int step = 1; step <= NODES * NODES; step *= NODES)
+    for (int i = 0; i + step < BLOCK_NODES; i++) at[i] = join(at[i], at[i + step]);
   for (int i = 0; i < BLOCK_CELLS; i++) {
-    const int x = i % CELLS, y = i / CELLS % CELLS, z = i / (CELLS * CELLS);
-    int inside = 0;
-    double least = INFINITY;
-    for (int k = 0; k < 8; k++) {
-      const double phi = b->phi[node_at(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2))];
-      inside += phi < 0;
-      least = fmin(least, fabs(phi));
-    }
-    b->kinds[i] = inside > 0 && inside < 8 ? CROSSED : least <= near ? NEAR_ZERO : EMPTY;
+    const summary *s = &at[node_at(i % CELLS, i / CELLS % CELLS, i / (CELLS * CELLS))];
+    b->kinds[i] = s->inside > 0 && s->inside < s->count ? CROSSED : s->least <= near ? NEAR_ZERO : EMPTY;
   }
 }
 

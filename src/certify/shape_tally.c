@@ -3,8 +3,6 @@
 
 #include <string.h>
 
-#include "mesh/quality.h"
-
 #define DEGREES 57.295779513082323
 /* An angle this little below a bin's lower edge belongs there: exact tiles have angles of 60 degrees, give or take a
  * rounding error of about 1e-13. */
@@ -35,16 +33,17 @@ static void add_value(laves__shape_tally *part, int measure, double value, size_
   tally_add(&part->measures[measure], value, origin[measure], tet);
 }
 
-static void add_angles(laves__shape_tally *part, const laves__vec3 p[4], size_t tet) {
-  double cosines[6], least = INFINITY, most = -INFINITY;
-  laves__tet_dihedral_cosines(p, cosines);
+static void add_angles(laves__shape_tally *part, const laves__shape_batch *batch, int lane, size_t tet) {
+  double least = INFINITY, most = -INFINITY;
+  for (int i = 0; i < 6; i++)
+    if (!isfinite(batch->cosine[i][lane])) return;
   for (int i = 0; i < 6; i++) {
-    if (!isfinite(cosines[i])) return;
-    const double angle = acos(fmax(-1, fmin(1, cosines[i]))) * DEGREES;
+    const double cosine = batch->cosine[i][lane];
+    const double angle = acos(cosine > 1 ? 1 : cosine < -1 ? -1 : cosine) * DEGREES;
     const int bin = (int)((angle + BIN_SLACK) / (180.0 / LAVES_HISTOGRAM_BINS));
     part->histogram[bin < LAVES_HISTOGRAM_BINS ? bin : LAVES_HISTOGRAM_BINS - 1]++;
-    least = fmin(least, angle);
-    most = fmax(most, angle);
+    if (angle < least) least = angle;
+    if (angle > most) most = angle;
   }
   add_value(part, LAVES__MIN_DIHEDRAL, least, tet);
   add_value(part, LAVES__MAX_DIHEDRAL, most, tet);
@@ -55,12 +54,26 @@ void laves__shape_tally_clear(laves__shape_tally *tally) {
   for (int m = 0; m < LAVES__MEASURES; m++) tally_clear(&tally->measures[m]);
 }
 
-void laves__shape_tally_add(laves__shape_tally *tally, const laves__vec3 p[4], size_t tet) {
-  add_angles(tally, p, tet);
-  add_value(tally, LAVES__RADIUS_RATIO, laves__tet_radius_ratio(p), tet);
-  add_value(tally, LAVES__RADIUS_EDGE, laves__tet_radius_edge(p), tet);
-  add_value(tally, LAVES__VOLUME_LENGTH, laves__tet_volume_length(p), tet);
-  tally->volume += v3_det(p[0], p[1], p[2], p[3]) / 6;
+void laves__shape_queue_clear(laves__shape_queue *queue) { memset(queue, 0, sizeof *queue); }
+
+void laves__shape_tally_flush(laves__shape_tally *tally, laves__shape_queue *queue) {
+  const laves__shape_batch *batch = &queue->batch;
+  if (queue->count > 0) laves__shape_batch_measure(&queue->batch);
+  for (int lane = 0; lane < queue->count; lane++) {
+    const size_t tet = queue->tet[lane];
+    add_angles(tally, batch, lane, tet);
+    add_value(tally, LAVES__RADIUS_RATIO, batch->radius_ratio[lane], tet);
+    add_value(tally, LAVES__RADIUS_EDGE, batch->radius_edge[lane], tet);
+    add_value(tally, LAVES__VOLUME_LENGTH, batch->volume_length[lane], tet);
+    tally->volume += batch->determinant[lane] / 6;
+  }
+  queue->count = 0;
+}
+
+void laves__shape_tally_add(laves__shape_tally *tally, laves__shape_queue *queue, const laves__vec3 p[4], size_t tet) {
+  laves__shape_batch_set(&queue->batch, queue->count, p);
+  queue->tet[queue->count++] = tet;
+  if (queue->count == LAVES__SHAPE_BATCH) laves__shape_tally_flush(tally, queue);
 }
 
 static void tally_merge(laves__measure_tally *into, const laves__measure_tally *more) {

@@ -4,6 +4,7 @@
 
 #include "base/base.h"
 #include "base/vec3.h"
+#include "mesh/shape_batch.h"
 
 enum { LAVES__MIN_DIHEDRAL, LAVES__MAX_DIHEDRAL, LAVES__RADIUS_RATIO, LAVES__RADIUS_EDGE, LAVES__VOLUME_LENGTH, LAVES__MEASURES };
 
@@ -22,9 +23,19 @@ typedef struct laves__shape_tally {
   double volume;
 } laves__shape_tally;
 
+/* Tets that wait to be measured together. */
+typedef struct laves__shape_queue {
+  laves__shape_batch batch;
+  size_t tet[LAVES__SHAPE_BATCH];
+  int count;
+} laves__shape_queue;
+
 void laves__shape_tally_clear(laves__shape_tally *tally);
-/* Finite corners of a tet and its number; whatever is not finite of a flat tet is left out. */
-void laves__shape_tally_add(laves__shape_tally *tally, const laves__vec3 p[4], size_t tet);
+void laves__shape_queue_clear(laves__shape_queue *queue);
+/* Finite corners of a tet and its number; whatever is not finite of a flat tet is left out. It counts at the latest when the
+ * queue is flushed. */
+void laves__shape_tally_add(laves__shape_tally *tally, laves__shape_queue *queue, const laves__vec3 p[4], size_t tet);
+void laves__shape_tally_flush(laves__shape_tally *tally, laves__shape_queue *queue);
 /* `more` is of tets behind those of `into`. */
 void laves__shape_tally_merge(laves__shape_tally *into, const laves__shape_tally *more);
 /* Which tet is the worst by each measure; -1: none could be measured. */

@@ -110,22 +110,24 @@ static void carve_cells_by_distance(void *user, size_t begin, size_t end, int wo
   for (size_t brick = begin; brick < end; brick++) {
     laves__vec3 centre[BLOCKS];
     double phi[BLOCKS];
+    uint32_t hint[BLOCKS] = {LAVES__NO_HINT};
     for (int block = 0; block < BLOCKS; block++) {
       int32_t cell[3];
       cell_of(c, brick, BLOCK * ((block & 1) + SIDE * ((block >> 1 & 1) + SIDE * (block >> 2))), cell);
       const laves__vec3 corner = laves__site_position(cell, 0);
       centre[block] = v3(corner.x + BLOCK * half, corner.y + BLOCK * half, corner.z + BLOCK * half);
     }
-    laves__frame_evaluate(c->frame, BLOCKS, centre, phi, NULL);
+    laves__frame_evaluate(c->frame, BLOCKS, centre, phi, hint);
     for (int block = 0; block < BLOCKS; block++) {
       const int first = BLOCK * ((block & 1) + SIDE * ((block >> 1 & 1) + SIDE * (block >> 2)));
       const bool open = !(fabs(phi[block]) > decisive_distance(BLOCK));
       laves__vec3 cell_centre[BLOCKS];
       double cell_phi[BLOCKS];
+      uint32_t cell_hint[BLOCKS] = {hint[block]};
       for (int i = 0; i < BLOCKS; i++)
         cell_centre[i] = v3(centre[block].x + (i & 1 ? half : -half), centre[block].y + (i >> 1 & 1 ? half : -half),
                             centre[block].z + (i >> 2 ? half : -half));
-      if (open) laves__frame_evaluate(c->frame, BLOCKS, cell_centre, cell_phi, NULL);
+      if (open) laves__frame_evaluate(c->frame, BLOCKS, cell_centre, cell_phi, cell_hint);
       for (int i = 0; i < BLOCKS; i++) {
         const size_t at = brick * LAVES__BRICK_CELLS + (size_t)(first + (i & 1) + SIDE * ((i >> 1 & 1) + SIDE * (i >> 2)));
         const double value = open ? cell_phi[i] : phi[block];
@@ -189,6 +191,7 @@ static bool spoken_for(const speakers *s, laves__vec3 point, double *phi) {
 
 static void evaluate_by_distance(const laves__frame *frame, laves__record *r) {
   speakers s = {.count = 0};
+  uint32_t latest = LAVES__NO_HINT;
   const double half = 0.5 * LAVES__CELL_SIDE;
   const laves__vec3 corner = laves__site_position(r->xyz, 0);
   if (r->centre_phi != 0) {
@@ -207,12 +210,14 @@ static void evaluate_by_distance(const laves__frame *frame, laves__record *r) {
       at[asked] = p;
       site_of[asked++] = site;
     }
+    hint[0] = latest;
     if (asked) laves__frame_evaluate(frame, (size_t)asked, at, value, hint);
     for (int i = 0; i < asked; i++) {
       r->phi[site_of[i]] = value[i];
       r->hint[site_of[i]] = hint[i];
       s.at[s.count] = at[i];
       s.value[s.count++] = value[i];
+      latest = hint[i];
     }
   }
 }
@@ -223,6 +228,7 @@ static void evaluate_record(const laves__frame *frame, laves__record *r) {
   } else {
     laves__vec3 at[LAVES__C15_SITES];
     for (int site = 0; site < LAVES__C15_SITES; site++) at[site] = laves__site_position(r->xyz, site);
+    r->hint[0] = LAVES__NO_HINT;
     laves__frame_evaluate(frame, LAVES__C15_SITES, at, r->phi, r->hint);
   }
   for (int site = 0; site < LAVES__C15_SITES; site++) {
@@ -271,6 +277,41 @@ static bool seal_cell(laves__lattice *l, int32_t x, int32_t y, int32_t z) {
   return !touches || laves__lattice_add_record(l, x, y, z) >= 0;
 }
 
+/* The cells of a brick and those around it. */
+enum { RIM = 1, WITH_RIM = LAVES__BRICK_SIDE + 2 * RIM };
+typedef struct neighbourhood {
+  int32_t cell[WITH_RIM][WITH_RIM][WITH_RIM]; /* z, y, x */
+} neighbourhood;
+
+static void look_around(const laves__lattice *l, const int32_t first[3], neighbourhood *n) {
+  for (int z = 0; z < WITH_RIM; z++)
+    for (int y = 0; y < WITH_RIM; y++)
+      for (int x = 0; x < WITH_RIM; x++)
+        n->cell[z][y][x] = laves__lattice_cell(l, first[0] + x - RIM, first[1] + y - RIM, first[2] + z - RIM);
+}
+
+/* Whether a cell of the brick is inside and touches one outside. */
+static bool is_unsealed(const neighbourhood *n, const int at[3]) {
+  if (n->cell[at[2] + RIM][at[1] + RIM][at[0] + RIM] != LAVES__IN) return false;
+  for (int k = 0; k < 27; k++)
+    if (n->cell[at[2] + k / 9][at[1] + k / 3 % 3][at[0] + k % 3] == LAVES__OUT) return true;
+  return false;
+}
+
+/* Looked up once for all cells of the brick, and again after a change, which is rare. */
+static bool seal_brick(laves__lattice *l, const int32_t first[3]) {
+  neighbourhood n;
+  look_around(l, first, &n);
+  for (int inside = 0; inside < LAVES__BRICK_CELLS; inside++) {
+    const int at[3] = {inside % LAVES__BRICK_SIDE, inside / LAVES__BRICK_SIDE % LAVES__BRICK_SIDE,
+                       inside / (LAVES__BRICK_SIDE * LAVES__BRICK_SIDE)};
+    if (!is_unsealed(&n, at)) continue;
+    if (!seal_cell(l, first[0] + at[0], first[1] + at[1], first[2] + at[2])) return false;
+    look_around(l, first, &n);
+  }
+  return true;
+}
+
 /* Inside cells never touch outside cells when the oracle's answers about boxes agree with one another; where they do not,
  * both are looked at site by site. */
 static bool seal_cells(laves__lattice *l) {
@@ -279,11 +320,9 @@ static bool seal_cells(laves__lattice *l) {
       for (int32_t bx = 0; bx < l->bricks[0]; bx++) {
         const int32_t b[3] = {bx, by, bz};
         if (l->directory[slot_of(l, b)] == LAVES__OUT || is_deep_brick(l, b)) continue;
-        for (int inside = 0; inside < LAVES__BRICK_CELLS; inside++)
-          if (!seal_cell(l, l->lower[0] + bx * LAVES__BRICK_SIDE + inside % LAVES__BRICK_SIDE,
-                         l->lower[1] + by * LAVES__BRICK_SIDE + inside / LAVES__BRICK_SIDE % LAVES__BRICK_SIDE,
-                         l->lower[2] + bz * LAVES__BRICK_SIDE + inside / (LAVES__BRICK_SIDE * LAVES__BRICK_SIDE)))
-            return false;
+        const int32_t first[3] = {l->lower[0] + bx * LAVES__BRICK_SIDE, l->lower[1] + by * LAVES__BRICK_SIDE,
+                                  l->lower[2] + bz * LAVES__BRICK_SIDE};
+        if (!seal_brick(l, first)) return false;
       }
   return true;
 }

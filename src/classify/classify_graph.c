@@ -64,7 +64,7 @@ static laves__side side_of(const labelling *l, const run *r) {
 
 static void ask(const labelling *l, const run *r) {
   double phi[ASKED];
-  uint32_t hint[ASKED];
+  uint32_t hint[ASKED] = {LAVES__NO_HINT};
   laves__frame_evaluate(l->frame, r->count, l->lattice->graph->position + r->first, phi, hint);
   for (size_t i = 0; i < r->count; i++) set_site(l->lattice, r->first + i, phi[i], hint[i]);
 }

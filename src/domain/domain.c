@@ -53,10 +53,12 @@ static laves_result build_script(laves_context *context, const char *path, const
   return result;
 }
 
-static laves_result build_surface(laves_context *context, const char *path, const char *bytes, size_t length,
+/* Takes over the file's bytes, which are given back once they are read: what follows needs the memory. */
+static laves_result build_surface(laves_context *context, const char *path, char *bytes, size_t length,
                                   const laves_surface_options *options, laves_domain *made, laves_error *error) {
   laves__surface_input input = {0};
   const laves_result result = laves__surface_parse(context, bytes, length, path, &input, error);
+  laves__free(context, bytes, length + 1, 1);
   return result == LAVES_OK ? laves__surface_build(context, &input, options, made, error) : result;
 }
 
@@ -89,8 +91,10 @@ laves_result laves_domain_from_file_with(laves_context *context, const char *pat
       result = laves__fail_cancelled(error);
     else if (ends_with_lua(path))
       result = build_script(context, path, bytes, length, made, error);
-    else
+    else {
       result = build_surface(context, path, bytes, length, options, made, error);
+      bytes = NULL;
+    }
     laves__free(context, bytes, length + 1, 1);
   }
   return finish(result, made, domain);

@@ -64,7 +64,7 @@ static void find_normals(const laves__feature_edges *e) {
       at = s->across[longest] / 3;
       steps++;
     }
-    e->normal[f] = steps < SLIVER_STEPS ? s->face_normals[at] : v3(0, 0, 0);
+    e->normal[f] = steps < SLIVER_STEPS ? laves__face_normal(s, at) : v3(0, 0, 0);
   }
 }
 

@@ -32,6 +32,7 @@ void laves__frame_evaluate(const laves__frame *frame, size_t count, const laves_
   for (size_t begin = 0; begin < count; begin += CHUNK) {
     const size_t n = count - begin < CHUNK ? count - begin : CHUNK;
     for (size_t i = 0; i < n; i++) local[i] = laves__frame_to_local(frame, points[begin + i]);
+    if (hints && begin > 0) hints[begin] = hints[begin - 1];
     frame->oracle->evaluate(frame->oracle->self, n, local, phi + begin, hints ? hints + begin : NULL);
     for (size_t i = 0; i < n; i++) phi[begin + i] *= per_size;
   }

@@ -33,7 +33,8 @@ typedef struct laves__oracle {
   double area;        /* exact, or NAN */
 
   /* phi[i] at points[i], negative inside. Points of one call should lie near one another. hints, unless NULL, receives
-   * for each point what `project` can start from (the nearest feature), or LAVES__NO_HINT. */
+   * for each point what `project` can start from (the nearest feature), or LAVES__NO_HINT; before the call hints[0] holds what is
+   * known of a point near the first, or LAVES__NO_HINT, which makes it quicker and changes no value. */
   void (*evaluate)(const void *self, size_t count, const laves__vec3 *points, double *phi, uint32_t *hints);
 
   /* A point of the surface {phi = 0} nearest to `point` (for implicit solids: near it, found by Newton steps along the

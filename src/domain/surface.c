@@ -391,7 +391,7 @@ static void fill_domain(laves__surface *s, laves__surface_input *input, laves__v
   info->kind = LAVES_DOMAIN_SURFACE;
   info->point_count = s->point_count;
   info->triangle_count = s->face_count;
-  if (!input->tags) return;
+  if (!s->tags) return;
   domain->tag_names = input->tag_names;
   info->tag_count = input->tag_names ? input->tag_count : 0;
   input->tag_names = NULL;
@@ -422,9 +422,10 @@ static laves_result refuse_emptiness(const laves__surface *s, size_t triangle_co
 }
 
 /* Weld, solve, judge. */
-static laves_result make_surface(laves__surface *s, const laves__surface_input *input, bool close_holes, laves_domain_info *info,
+static laves_result make_surface(laves__surface *s, laves__surface_input *input, bool close_holes, laves_domain_info *info,
                                  laves_error *error) {
   if (!laves__surface_weld(s, input, s->origin, info)) return laves__fail_memory(s->context, error);
+  laves__surface_input_free_arrays(s->context, input);
   if (s->face_count == 0)
     return laves__fail(error, LAVES_ERROR_INPUT, "all %zu triangles of the surface are without area", input->triangle_count);
   const laves_result result = solve(s, close_holes, info, error);

@@ -143,7 +143,6 @@ typedef struct laves__surface {
   uint32_t *sources;    /* [face_capacity] the face of the file that each is a part of, from 0 */
   size_t face_count, face_capacity;
   uint32_t *across;           /* [3 face_capacity] half-edge (3 face + corner where it starts) on the other side, or NONE */
-  laves__vec3 *face_normals;  /* [face_capacity] of length one; zero for faces without area */
   laves__vec3 *point_normals; /* [point_capacity] weighted by angle */
   laves__bvh bvh;
   double diagonal;
@@ -173,6 +172,13 @@ typedef struct laves__surface {
   double *rim_lengths;   /* of the rim below each node of rim_tree */
   laves__bvh rim_tree;   /* over the rim of the whole, before walls were left out */
 } laves__surface;
+
+/* The normal of a face, of length one; zero for faces without area. Made anew each time, for a large surface has no memory to
+ * spare for all. */
+static inline laves__vec3 laves__face_normal(const laves__surface *s, uint32_t face) {
+  const laves__triangle *t = &s->bvh.triangles[face];
+  return v3_unit(v3_cross(v3_sub(t->b, t->a), v3_sub(t->c, t->a)));
+}
 
 /* ---- weld ---- */
 

@@ -15,6 +15,10 @@
 #include <float.h>
 #include <string.h>
 
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
+
 #include "domain/surface.h"
 
 enum { BIN_COUNT = 16, BALANCED_DEPTH = 24 };
@@ -26,15 +30,40 @@ static const float box_slack = 0x1p-21f;
 static const float limit_slack = 1.0f + 0x1p-18f;
 static const float far_away = 1e17f;
 
+/* Four lanes, in the vector notation that GCC and Clang share; plain loops are not turned into vector code here. */
+typedef float float4 __attribute__((vector_size(16), aligned(4), may_alias));
+typedef int32_t int4 __attribute__((vector_size(16), aligned(4), may_alias));
+
+/* Lane by lane a < b ? a : b, and a > b ? a : b: one instruction each where there is one. */
+static inline float4 lesser(float4 a, float4 b) {
+#ifdef __SSE__
+  return (float4)_mm_min_ps((__m128)a, (__m128)b);
+#else
+  const int4 less = a < b;
+  return (float4)(((int4)a & less) | ((int4)b & ~less));
+#endif
+}
+
+static inline float4 greater(float4 a, float4 b) {
+#ifdef __SSE__
+  return (float4)_mm_max_ps((__m128)a, (__m128)b);
+#else
+  const int4 more = a > b;
+  return (float4)(((int4)a & more) | ((int4)b & ~more));
+#endif
+}
+
 /* ---- building ---- */
 
+/* Three floats are read as four, so something must stand behind each. */
 typedef struct item {
   float lower[3], upper[3], centre[3];
   uint32_t face;
 } item;
 
+/* The fourth lanes mean nothing. */
 typedef struct box {
-  float lower[3], upper[3];
+  float4 lower, upper;
 } box;
 
 typedef struct range {
@@ -48,14 +77,17 @@ typedef struct builder {
   item *items;
 } builder;
 
-static box box_empty(void) { return (box){{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}}; }
-
-static void box_join(box *b, const float lower[3], const float upper[3]) {
-  for (int k = 0; k < 3; k++) {
-    b->lower[k] = lower[k] < b->lower[k] ? lower[k] : b->lower[k];
-    b->upper[k] = upper[k] > b->upper[k] ? upper[k] : b->upper[k];
-  }
+static inline box box_empty(void) {
+  return (box){{FLT_MAX, FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX, -FLT_MAX}};
 }
+
+static inline void box_join(box *b, float4 lower, float4 upper) {
+  b->lower = lesser(lower, b->lower);
+  b->upper = greater(upper, b->upper);
+}
+
+/* Three floats of an item, and what stands behind them. */
+static inline float4 three(const float x[3]) { return *(const float4 *)x; }
 
 static float half_area(const box *b) {
   const float x = b->upper[0] - b->lower[0], y = b->upper[1] - b->lower[1], z = b->upper[2] - b->lower[2];
@@ -64,7 +96,7 @@ static float half_area(const box *b) {
 
 static box items_box(const item *items, uint32_t begin, uint32_t end) {
   box b = box_empty();
-  for (uint32_t i = begin; i < end; i++) box_join(&b, items[i].lower, items[i].upper);
+  for (uint32_t i = begin; i < end; i++) box_join(&b, three(items[i].lower), three(items[i].upper));
   return b;
 }
 
@@ -75,7 +107,7 @@ static void make_items(laves_context *context, const laves__bvh *bvh, const lave
     box b = box_empty();
     for (int i = 0; i < 3; i++) {
       const laves__vec3 p = points[faces[f][i]];
-      const float q[3] = {(float)(p.x * bvh->scale), (float)(p.y * bvh->scale), (float)(p.z * bvh->scale)};
+      const float4 q = {(float)(p.x * bvh->scale), (float)(p.y * bvh->scale), (float)(p.z * bvh->scale), 0};
       box_join(&b, q, q);
     }
     for (int k = 0; k < 3; k++) {
@@ -100,7 +132,7 @@ static int bin_of(const binning *g, const item *i) {
 /* How to bin a range: along the longest axis of its centres; false when all centres agree. */
 static bool choose_bins(const item *items, uint32_t begin, uint32_t end, binning *g) {
   box c = box_empty();
-  for (uint32_t i = begin; i < end; i++) box_join(&c, items[i].centre, items[i].centre);
+  for (uint32_t i = begin; i < end; i++) box_join(&c, three(items[i].centre), three(items[i].centre));
   int axis = 0;
   for (int k = 1; k < 3; k++)
     if (c.upper[k] - c.lower[k] > c.upper[axis] - c.lower[axis]) axis = k;
@@ -118,7 +150,7 @@ static int best_bin(const item *items, uint32_t begin, uint32_t end, const binni
   for (uint32_t i = begin; i < end; i++) {
     const int b = bin_of(g, &items[i]);
     counts[b]++;
-    box_join(&boxes[b], items[i].lower, items[i].upper);
+    box_join(&boxes[b], three(items[i].lower), three(items[i].upper));
   }
   float below[BIN_COUNT];
   box joined = box_empty();
@@ -206,7 +238,7 @@ static uint32_t make_node(builder *b, range whole, int depth) {
   const int count = part_in_four(b, ranges, depth);
   if (count == 0) return LAVES__NONE;
   laves__bvh_node node;
-  const box nowhere = {{far_away, far_away, far_away}, {far_away, far_away, far_away}};
+  const box nowhere = {{far_away, far_away, far_away, far_away}, {far_away, far_away, far_away, far_away}};
   for (int i = 0; i < 4; i++) {
     set_box(&node, i, i < count ? &ranges[i].bounds : &nowhere);
     node.child[i] = LAVES__LEAF_BIT;
@@ -246,31 +278,47 @@ static double tree_scale(laves_context *context, const laves__vec3 *points, cons
   return ldexp(1, -exponent);
 }
 
-bool laves__bvh_build(laves_context *context, const laves__vec3 *points, const uint32_t (*faces)[3], size_t face_count,
-                      uint32_t *order, laves__bvh *bvh) {
+/* Gives back what the nodes' array has to spare; false when memory is short. */
+static bool fit_nodes(laves_context *context, laves__bvh *bvh) {
+  void *fitted = laves__realloc(context, bvh->nodes, bvh->node_capacity, bvh->node_count, sizeof *bvh->nodes);
+  if (!fitted) return false;
+  bvh->nodes = fitted;
+  bvh->node_capacity = bvh->node_count;
+  return true;
+}
+
+/* The nodes, and the order of the faces. */
+static bool build_nodes(laves_context *context, const laves__vec3 *points, const uint32_t (*faces)[3], size_t face_count,
+                        uint32_t *order, laves__bvh *bvh) {
   bool done = false;
-  *bvh = (laves__bvh){.scale = tree_scale(context, points, faces, face_count)};
   item *items = laves__alloc(context, face_count, sizeof *items);
-  laves__triangle *triangles = laves__alloc(context, face_count, sizeof *triangles);
-  if (!items || !triangles) goto clean_up;
+  if (!items) return false;
   make_items(context, bvh, points, faces, face_count, items);
   if (laves__is_cancelled(context)) goto clean_up;
   builder b = {context, bvh, items};
   const range whole = {0, (uint32_t)face_count, items_box(items, 0, (uint32_t)face_count)};
   if (make_node(&b, whole, 0) == LAVES__NONE) goto clean_up;
-  for (size_t slot = 0; slot < face_count; slot++) {
-    if (laves__cancelled_at(context, "surface", slot, face_count)) goto clean_up;
-    const uint32_t *f = faces[items[slot].face];
-    order[slot] = items[slot].face;
-    triangles[slot] = laves__triangle_of(points[f[0]], points[f[1]], points[f[2]]);
-  }
-  bvh->triangles = triangles;
-  bvh->count = face_count;
-  triangles = NULL;
+  if (!fit_nodes(context, bvh)) goto clean_up;
+  for (size_t slot = 0; slot < face_count; slot++) order[slot] = items[slot].face;
   done = true;
 clean_up:
   laves__free(context, items, face_count, sizeof *items);
-  laves__free(context, triangles, face_count, sizeof *triangles);
+  return done;
+}
+
+/* The items are given back before the triangles, which are larger than all else, are made. */
+bool laves__bvh_build(laves_context *context, const laves__vec3 *points, const uint32_t (*faces)[3], size_t face_count,
+                      uint32_t *order, laves__bvh *bvh) {
+  *bvh = (laves__bvh){.scale = tree_scale(context, points, faces, face_count)};
+  bool done = build_nodes(context, points, faces, face_count, order, bvh);
+  if (done) bvh->triangles = laves__alloc(context, face_count, sizeof *bvh->triangles);
+  done = bvh->triangles != NULL;
+  if (done) bvh->count = face_count;
+  for (size_t slot = 0; done && slot < face_count; slot++) {
+    done = !laves__cancelled_at(context, "surface", slot, face_count);
+    const uint32_t *f = faces[order[slot]];
+    bvh->triangles[slot] = laves__triangle_of(points[f[0]], points[f[1]], points[f[2]]);
+  }
   if (!done) laves__bvh_free(context, bvh);
   return done;
 }
@@ -329,14 +377,12 @@ static inline laves__vec3 closest(const laves__triangle *t, laves__vec3 p, int *
 
 laves__vec3 laves__triangle_closest(const laves__triangle *t, laves__vec3 p, int *on) { return closest(t, p, on); }
 
-double laves__triangle_distance2(const laves__triangle *t, laves__vec3 p) {
+static inline double distance2_to(const laves__triangle *t, laves__vec3 p) {
   int on;
   return v3_norm2(v3_sub(p, closest(t, p, &on)));
 }
 
-/* Four lanes, in the vector notation that GCC and Clang share; plain loops are not turned into vector code here. */
-typedef float float4 __attribute__((vector_size(16), aligned(4), may_alias));
-typedef int32_t int4 __attribute__((vector_size(16), aligned(4), may_alias));
+double laves__triangle_distance2(const laves__triangle *t, laves__vec3 p) { return distance2_to(t, p); }
 
 /* How far x lies outside [centre - half, centre + half], lane by lane. */
 static inline float4 outside(float x, const float4 *centre, const float4 *half) {
@@ -392,7 +438,7 @@ void laves__bvh_nearest(const laves__bvh *bvh, laves__vec3 point, laves__nearest
     }
     const uint32_t first = laves__leaf_first(next.child), last = laves__leaf_last(next.child);
     for (uint32_t slot = first; slot <= last; slot++) {
-      const double d2 = laves__triangle_distance2(&bvh->triangles[slot], point);
+      const double d2 = distance2_to(&bvh->triangles[slot], point);
       if (d2 > best->distance2 || (d2 == best->distance2 && slot >= best->slot)) continue;
       *best = (laves__nearest){d2, slot};
       limit = search_limit(bvh, d2);
@@ -465,16 +511,6 @@ typedef struct ray {
 static float inverse(double x) {
   const float tiny = 1e-12f;
   return 1 / (fabs(x) > (double)tiny ? (float)x : x < 0 ? -tiny : tiny);
-}
-
-static inline float4 lesser(float4 a, float4 b) {
-  const int4 less = a < b;
-  return (float4)(((int4)a & less) | ((int4)b & ~less));
-}
-
-static inline float4 greater(float4 a, float4 b) {
-  const int4 more = a > b;
-  return (float4)(((int4)a & more) | ((int4)b & ~more));
 }
 
 /* Which of the four boxes the ray meets before `farthest`. */

@@ -148,6 +148,7 @@ typedef struct question {
   finder *f;
   uint32_t first, last; /* the triangles that ask */
   laves__box3 box[LAVES__LEAF_MAX];
+  laves__plane plane[LAVES__LEAF_MAX];
   size_t asked, crossing;
   int worker;
 } question;
@@ -179,6 +180,50 @@ static void add_pair(question *q, uint32_t a, uint32_t b) {
   c->pairs[c->count++][1] = b;
 }
 
+/* Which side of zero a product of vectors lies on, as far as rounding leaves no doubt; else 0. */
+static int certain_side(laves__vec3 a, laves__vec3 b) {
+  static const double doubt = 1e-14; /* ten times what rounding of the factors and of the sum can make */
+  const double x = a.x * b.x, y = a.y * b.y, z = a.z * b.z, sum = x + y + z, bound = doubt * (fabs(x) + fabs(y) + fabs(z));
+  return sum > bound ? 1 : -sum > bound ? -1 : 0;
+}
+
+/* Whether a plane through the one point that two triangles share parts them: t and u are the ways from it to their other corners.
+ */
+static bool parted_at_point(const laves__vec3 t[2], const laves__vec3 u[2]) {
+  const laves__vec3 way = v3_sub(v3_add(t[0], t[1]), v3_add(u[0], u[1]));
+  return certain_side(way, t[0]) > 0 && certain_side(way, t[1]) > 0 && certain_side(way, u[0]) < 0 && certain_side(way, u[1]) < 0;
+}
+
+/* Corner i of a triangle. */
+static laves__vec3 corner(const laves__triangle *t, int i) { return i == 0 ? t->a : i == 1 ? t->b : t->c; }
+
+/* Whether two faces can't meet but in the points that they share, which is soon seen of nearly all pairs of a smooth surface:
+ * what one does not share lies on one side of the other's plane, or a plane through the one shared point parts them. plane: that
+ * of `other`. */
+static bool surely_apart(const laves__surface *s, uint32_t slot, uint32_t other, const laves__plane *plane) {
+  const uint32_t *f = s->faces[slot], *g = s->faces[other];
+  const laves__triangle *t = &s->bvh.triangles[slot];
+  int sum = 0, alone = 0, zeros = 0, at = 0;
+  for (int i = 0; i < 3; i++) {
+    if (f[i] == g[0] || f[i] == g[1] || f[i] == g[2]) {
+      at = i;
+      continue;
+    }
+    const int side = laves__plane_side(plane, corner(t, i));
+    sum += side;
+    zeros += side == 0;
+    alone++;
+  }
+  if (alone > 0 && (sum == alone || sum == -alone)) return true;
+  if (alone != 2 || zeros == 2) return false;
+  const int own = g[0] == f[at] ? 0 : g[1] == f[at] ? 1 : 2;
+  const laves__triangle *u = &s->bvh.triangles[other];
+  const laves__vec3 point = corner(t, at);
+  const laves__vec3 of_t[2] = {v3_sub(corner(t, (at + 1) % 3), point), v3_sub(corner(t, (at + 2) % 3), point)};
+  const laves__vec3 of_u[2] = {v3_sub(corner(u, (own + 1) % 3), point), v3_sub(corner(u, (own + 2) % 3), point)};
+  return parted_at_point(of_t, of_u);
+}
+
 static void ask(void *user, uint32_t slot) {
   question *q = user;
   const laves__surface *s = q->f->s;
@@ -186,7 +231,9 @@ static void ask(void *user, uint32_t slot) {
   q->asked++;
   const laves__box3 box = face_box(s, slot);
   for (uint32_t mine = q->first; mine <= q->last && mine < slot; mine++)
-    if (!boxes_apart(q->box[mine - q->first], box) && faces_meet(s, mine, slot)) add_pair(q, mine, slot);
+    if (!boxes_apart(q->box[mine - q->first], box) && !surely_apart(s, slot, mine, &q->plane[mine - q->first]) &&
+        faces_meet(s, mine, slot))
+      add_pair(q, mine, slot);
 }
 
 /* The leaves of a range of nodes; all triangles of a leaf ask together. */
@@ -200,7 +247,9 @@ static void find_in_range(void *user, size_t begin, size_t end, int worker) {
       question q = {.f = f, .first = laves__leaf_first(child), .last = laves__leaf_last(child), .worker = worker};
       laves__box3 whole = box3_empty();
       for (uint32_t slot = q.first; slot <= q.last; slot++) {
+        const laves__triangle *t = &bvh->triangles[slot];
         const laves__box3 b = q.box[slot - q.first] = face_box(f->s, slot);
+        q.plane[slot - q.first] = laves__plane_of(t->a, t->b, t->c);
         whole = box3_add(box3_add(whole, b.lower), b.upper);
       }
       laves__bvh_overlaps(bvh, whole, ask, &q);

@@ -19,6 +19,8 @@ typedef struct laves__surface_input {
 } laves__surface_input;
 
 void laves__surface_input_free(laves_context *context, laves__surface_input *input);
+/* Frees all but the names of tags and the format; the counts stay. */
+void laves__surface_input_free_arrays(laves_context *context, laves__surface_input *input);
 
 /* Reads a surface from `bytes` (a whole file); the format is found from the content, `name` is for messages and a
  * last resort. On failure input is empty and error says what is wrong and where (line or byte). */

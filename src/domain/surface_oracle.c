@@ -4,8 +4,8 @@
  *
  * The distance is that to the nearest triangle, and its sign that of the offset from the nearest point along the normal of
  * the feature (face, edge or point) on which this point lies; the normals of edges and points are sums over their faces,
- * weighted by angle [baerentzen2005]. Points of one call start from the triangle of the point before them. A hint is a
- * slot of the tree. */
+ * weighted by angle [baerentzen2005]. Points of one call start from the triangle of the point before them, the first from the
+ * hint that is handed in. A hint is a slot of the tree. */
 #include "domain/features.h"
 #include "domain/surface.h"
 
@@ -14,11 +14,11 @@ static const double on_piece = 1e-9;
 
 /* Directed outwards, not of length one. */
 static laves__vec3 feature_normal(const laves__surface *s, uint32_t slot, int on) {
-  if (on == LAVES__ON_FACE) return s->face_normals[slot];
+  if (on == LAVES__ON_FACE) return laves__face_normal(s, slot);
   if (on >= LAVES__ON_CORNER) return s->point_normals[s->faces[slot][on - LAVES__ON_CORNER]];
   const uint32_t half = s->across[3 * (size_t)slot + (size_t)(on - LAVES__ON_EDGE)];
-  const laves__vec3 n = s->face_normals[slot];
-  return half == LAVES__NONE ? n : v3_add(n, s->face_normals[half / 3]);
+  const laves__vec3 n = laves__face_normal(s, slot);
+  return half == LAVES__NONE ? n : v3_add(n, laves__face_normal(s, half / 3));
 }
 
 /* The nearest triangle; `start` may be LAVES__NO_HINT. */
@@ -109,7 +109,7 @@ static double signed_distance_by_winding(const laves__surface *s, laves__vec3 p,
       closest_part(s, part.slot, p, &foot, &amid);
   }
   const double distance = sqrt(part.distance2);
-  const bool inside = amid ? v3_dot(v3_sub(p, foot), s->face_normals[part.slot]) < 0 : is_inside(s, p);
+  const bool inside = amid ? v3_dot(v3_sub(p, foot), laves__face_normal(s, part.slot)) < 0 : is_inside(s, p);
   return inside ? -distance : distance;
 }
 
@@ -146,7 +146,7 @@ static bool open_project(const laves__surface *s, laves__vec3 p, double reach, u
   if (n.slot == LAVES__NONE) return false;
   bool amid;
   closest_part(s, n.slot, p, foot, &amid);
-  *normal = s->face_normals[n.slot];
+  *normal = laves__face_normal(s, n.slot);
   return true;
 }
 
@@ -172,7 +172,7 @@ static double signed_distance(const laves__surface *s, laves__vec3 p, const lave
 
 static void evaluate(const void *self, size_t count, const laves__vec3 *points, double *phi, uint32_t *hints) {
   const laves__surface *s = self;
-  uint32_t start = LAVES__NO_HINT;
+  uint32_t start = hints && count > 0 ? hints[0] : LAVES__NO_HINT;
   for (size_t i = 0; i < count; i++) {
     const laves__nearest n = nearest_from(s, points[i], INFINITY, start);
     phi[i] = n.slot == LAVES__NONE ? far_distance(points[i]) : signed_distance(s, points[i], &n);
@@ -222,11 +222,11 @@ static double measure_labelled(void *user, uint32_t slot, double distance2, lave
 
 /* At a point of a face: that of the face, or the mean over an edge or about a point where the part goes on. */
 static laves__vec3 part_normal(const laves__surface *s, const laves__part *part, uint32_t slot, int on) {
-  if (on == LAVES__ON_FACE) return s->face_normals[slot];
+  if (on == LAVES__ON_FACE) return laves__face_normal(s, slot);
   if (on >= LAVES__ON_CORNER)
-    return part->on_border[s->faces[slot][on - LAVES__ON_CORNER]] ? s->face_normals[slot] : feature_normal(s, slot, on);
+    return part->on_border[s->faces[slot][on - LAVES__ON_CORNER]] ? laves__face_normal(s, slot) : feature_normal(s, slot, on);
   const uint32_t half = s->across[3 * (size_t)slot + (size_t)(on - LAVES__ON_EDGE)];
-  return half != LAVES__NONE && belongs(part, half / 3) ? feature_normal(s, slot, on) : s->face_normals[slot];
+  return half != LAVES__NONE && belongs(part, half / 3) ? feature_normal(s, slot, on) : laves__face_normal(s, slot);
 }
 
 /* The nearest face of all is tried first: mostly it is one of the part, and that search is the quicker one. */
@@ -322,7 +322,6 @@ void laves__surface_free(laves_context *context, void *self) {
   laves__free(context, s->winding_slot, s->face_capacity, sizeof *s->winding_slot);
   laves__free(context, s->pieces, s->piece_count, sizeof *s->pieces);
   laves__free(context, s->piece_starts, s->face_capacity + 2, sizeof *s->piece_starts);
-  laves__free(context, s->face_normals, s->face_capacity, sizeof *s->face_normals);
   laves__free(context, s->point_normals, s->point_capacity, sizeof *s->point_normals);
   laves__free(context, s, 1, sizeof *s);
 }

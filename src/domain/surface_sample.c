@@ -76,10 +76,10 @@ size_t laves__surface_sample(const void *self, double spacing, laves__vec3 *poin
 
 /* Length of the chord that begins at the sample and goes inwards (side -1) or outwards (1), or INFINITY. */
 static double chord(const laves__surface *s, const sample *from, int side) {
-  const laves__vec3 direction = v3_scale(s->face_normals[from->slot], side);
+  const laves__vec3 direction = v3_scale(laves__face_normal(s, from->slot), side);
   laves__hit hit = {INFINITY, LAVES__NONE};
   laves__bvh_shoot(&s->bvh, from->at, direction, from->slot, &hit);
-  if (hit.slot == LAVES__NONE || -side * v3_dot(s->face_normals[hit.slot], direction) < parallel_min) return INFINITY;
+  if (hit.slot == LAVES__NONE || -side * v3_dot(laves__face_normal(s, hit.slot), direction) < parallel_min) return INFINITY;
   return hit.distance;
 }
 
@@ -117,7 +117,7 @@ size_t laves__surface_thin_places(const void *self, laves_thin_kind kind, laves_
     for (size_t i = 0; i < taken; i++) {
       const double length = chord(s, &samples[i], side);
       if (!isfinite(length)) continue;
-      const laves__vec3 middle = v3_mad(samples[i].at, s->face_normals[samples[i].slot], 0.5 * side * length);
+      const laves__vec3 middle = v3_mad(samples[i].at, laves__face_normal(s, samples[i].slot), 0.5 * side * length);
       all[count++] = (laves_thin_place){{middle.x, middle.y, middle.z}, length, kind};
     }
     qsort(all, count, sizeof *all, compare_places);

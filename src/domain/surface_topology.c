@@ -273,9 +273,8 @@ bool laves__surface_genus(const laves__surface *s, laves_domain_info *info) {
 /* ---- normals and measures ---- */
 
 bool laves__surface_normals(laves__surface *s) {
-  if (!s->face_normals) s->face_normals = laves__alloc(s->context, s->face_capacity, sizeof *s->face_normals);
   if (!s->point_normals) s->point_normals = laves__alloc(s->context, s->point_capacity, sizeof *s->point_normals);
-  if (!s->face_normals || !s->point_normals) return false;
+  if (!s->point_normals) return false;
   memset(s->point_normals, 0, s->point_count * sizeof *s->point_normals);
   for (size_t f = 0; f < s->face_count; f++) {
     if (laves__cancelled_at(s->context, "surface", f, s->face_count)) return false;
@@ -284,7 +283,6 @@ bool laves__surface_normals(laves__surface *s) {
     const laves__vec3 cross = v3_cross(v3_sub(p[1], p[0]), v3_sub(p[2], p[0]));
     const laves__vec3 normal = v3_unit(cross);
     const double sine = v3_norm(cross);
-    s->face_normals[f] = normal;
     for (int i = 0; i < 3; i++) {
       const laves__vec3 u = v3_sub(p[(i + 1) % 3], p[i]), v = v3_sub(p[(i + 2) % 3], p[i]);
       const double angle = laves__angle(sine, v3_dot(u, v));

@@ -7,8 +7,8 @@
 
 #include <stdlib.h>
 
+#include "base/wide.h"
 #include "domain/elementary.h"
-#include "domain/wide.h"
 
 /* Doubles in the register block of a run: 128 KiB, or 2 KiB for a few points. */
 enum { SCRATCH = 4 * LAVES__REGISTER_LIMIT, BATCH = 256, FEW = 256 };

@@ -4,9 +4,9 @@
  * zero) it is zero, so a kink never spoils the gradient of what is joined to it. */
 #include <string.h>
 
+#include "base/wide.h"
 #include "domain/elementary.h"
 #include "domain/tape.h"
-#include "domain/wide.h"
 
 typedef laves__dual dual;
 
@@ -43,7 +43,7 @@ static dual angle(dual y, dual x) {
 static dual leaf_value(const laves__oracle *leaf, dual a, dual b, dual c) {
   const laves__vec3 p = v3_sub(v3(a.value, b.value, c.value), leaf->origin);
   double phi;
-  uint32_t hint;
+  uint32_t hint = LAVES__NO_HINT;
   leaf->evaluate(leaf->self, 1, &p, &phi, &hint);
   laves__vec3 foot, normal, slope = v3(0, 0, 0);
   if (leaf->project(leaf->self, p, fabs(phi) * 2 + 1e-12 * box3_diagonal(leaf->bounds), &hint, &foot, &normal)) {

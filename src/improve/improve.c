@@ -101,8 +101,7 @@ typedef struct work {
 static void measure_all(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const work *w = user;
-  for (size_t t = begin; t < end; t++)
-    if (w->layer->tet[t][0] >= 0) w->layer->quality[t] = laves__layer_quality(&w->measure, w->layer, (int32_t)t);
+  laves__measure_tets(&w->measure, w->layer, begin, end, w->layer->quality + begin);
 }
 
 /* Whether a tet is the whole of a wall: all its corners are on the surface, none of them at a crease. */
@@ -288,7 +287,7 @@ static laves_result run_pass(work *w, size_t *before, laves_error *error) {
     size_t end = first + 1;
     while (end < w->block_count && same_colour(&w->item[w->block[end]], &w->item[w->block[first]])) end++;
     colour_range range = {w, first};
-    if (!laves__parallel_for(w->layer->context, NULL, end - first, 1, mend_blocks, &range)) return laves__fail_cancelled(error);
+    if (!laves__parallel_for(w->layer->context, NULL, end - first, 0, mend_blocks, &range)) return laves__fail_cancelled(error);
     first = end;
   }
   return LAVES_OK;
@@ -512,9 +511,15 @@ cleanup:
 }
 
 size_t laves__improve_outside(const laves__window *window, const laves__layer *layer) {
+  enum { PIECE = 1024 };
   const laves__measure m = laves__measure_of(window);
+  double quality[PIECE];
   size_t count = 0;
-  for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(layer->context, "improve", t, layer->tet_count); t++)
-    count += layer->tet[t][0] >= 0 && laves__layer_quality(&m, layer, (int32_t)t) < 1;
+  for (size_t t = 0; t < layer->tet_count; t += PIECE) {
+    if (laves__cancelled(layer->context, "improve", (double)t / (double)layer->tet_count)) break;
+    const size_t end = t + PIECE < layer->tet_count ? t + PIECE : layer->tet_count;
+    laves__measure_tets(&m, layer, t, end, quality);
+    for (size_t i = t; i < end; i++) count += layer->tet[i][0] >= 0 && quality[i - t] < 1;
+  }
   return count;
 }

@@ -94,4 +94,7 @@ static inline double laves__layer_quality(const laves__measure *m, const laves__
   return laves__quality(m, p, laves__layer_cube(layer, tet), laves__measure_fixed(m, layer, tet));
 }
 
+/* The same for the tets [begin, end), several at once: quality[t - begin] of those that live. The digits are the same. */
+void laves__measure_tets(const laves__measure *m, const laves__layer *layer, size_t begin, size_t end, double *quality);
+
 #endif

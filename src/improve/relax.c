@@ -71,11 +71,8 @@ static void exchange(laves__layer *layer, place *p, size_t v) {
 static void measure_tets(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const sweep *s = user;
-  for (size_t t = begin; t < end; t++) {
-    bool touched = false;
-    for (int k = 0; k < 4 && s->layer->tet[t][0] >= 0; k++) touched |= s->other[s->layer->tet[t][k]].moved;
-    if (touched) s->layer->quality[t] = laves__layer_quality(s->measure, s->layer, (int32_t)t);
-  }
+  /* Those that nothing touched keep theirs, to the last digit. */
+  laves__measure_tets(s->measure, s->layer, begin, end, s->layer->quality + begin);
 }
 
 static bool is_worse(const laves__layer *layer, int32_t t, double worst) {

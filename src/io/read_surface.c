@@ -52,15 +52,24 @@ laves_result laves__surface_parse(laves_context *context, const void *bytes, siz
   return laves__build_finish(&build, format->read(&build));
 }
 
+void laves__surface_input_free_arrays(laves_context *context, laves__surface_input *input) {
+  laves__free(context, input->tags, input->triangle_capacity, sizeof *input->tags);
+  laves__free(context, input->sources, input->triangle_capacity, sizeof *input->sources);
+  laves__free(context, input->points, input->point_capacity, sizeof *input->points);
+  laves__free(context, input->triangles, input->triangle_capacity, sizeof *input->triangles);
+  input->tags = NULL;
+  input->sources = NULL;
+  input->points = NULL;
+  input->triangles = NULL;
+  input->point_capacity = input->triangle_capacity = 0;
+}
+
 void laves__surface_input_free(laves_context *context, laves__surface_input *input) {
   if (input == NULL) return;
   for (int i = 0; i < input->tag_count; ++i) {
     laves__free(context, input->tag_names[i], strlen(input->tag_names[i]) + 1, 1);
   }
   laves__free(context, input->tag_names, (size_t)input->tag_count, sizeof *input->tag_names);
-  laves__free(context, input->tags, input->triangle_capacity, sizeof *input->tags);
-  laves__free(context, input->sources, input->triangle_capacity, sizeof *input->sources);
-  laves__free(context, input->points, input->point_capacity, sizeof *input->points);
-  laves__free(context, input->triangles, input->triangle_capacity, sizeof *input->triangles);
+  laves__surface_input_free_arrays(context, input);
   *input = (laves__surface_input){0};
 }

@@ -3,7 +3,8 @@
  * The faces are put into buckets by their lowest vertex (a counting sort), and each bucket, about twenty faces in a
  * usual mesh, is sorted by the other two vertices and the slot, so that equal faces stand side by side. Buckets are
  * independent and done in parallel; so are counting and filling, with atomic cursors. To keep memory low the lowest vertices are
- * taken range by range: a range holds about a quarter of all faces, and each range costs one more pass over the tets. */
+ * taken range by range: a range holds about a quarter of all faces, and each range costs one more pass over the tets, which
+ * leaves out chunks of tets that have no face in it: near tets mostly have near numbers. */
 #include "mesh/face_match.h"
 
 #include <stdatomic.h>
@@ -13,14 +14,14 @@ enum {
   RANGE_FACES_MIN = 1 << 20, /* a range this small needs 16 MB; more ranges would save nothing worth having */
   BUCKETS_PER_BLOCK = 256,
   INSERTION_MAX = 48, /* longer buckets are sorted by heap, so that hostile fans cost n log n */
-  TETS_PER_BLOCK = 1 << 14,
+  CHUNK_TETS = 1 << 12,
+  CHUNKS_PER_BLOCK = 4,
 };
 
-bool laves__tet_usable(const int32_t tet[4], size_t vertex_count) {
-  for (int i = 0; i < 4; i++)
-    if (tet[i] < 0 || (size_t)tet[i] >= vertex_count) return false;
-  return tet[0] != tet[1] && tet[0] != tet[2] && tet[0] != tet[3] && tet[1] != tet[2] && tet[1] != tet[3] && tet[2] != tet[3];
-}
+/* Which vertices are the lowest of a face of some tet in a chunk: none outside [low, high]. */
+typedef struct chunk {
+  int32_t low, high;
+} chunk;
 
 void laves__face_outwards(const int32_t tet[4], int face, int orientation, int32_t corners[3]) {
   const uint8_t *f = laves__tet_face[face];
@@ -76,6 +77,9 @@ typedef struct matcher {
   const char *phase;
   const int32_t (*tets)[4];
   size_t tet_count, vertex_count;
+  bool alone;    /* one worker: cursors need no locked instructions, which cost more than all else */
+  chunk *chunks; /* [chunk_count] */
+  size_t chunk_count;
   _Atomic uint64_t *start; /* [vertex_count + 1] where the bucket of each lowest vertex starts, over all ranges */
   laves__face_use *uses;
   uint64_t first; /* start of the range in hand: uses[0] is number `first` */
@@ -84,21 +88,35 @@ typedef struct matcher {
   void *user;
 } matcher;
 
-/* The four vertices ascending: the lowest vertex of each face is sorted[0], but for the face opposite it. */
+/* A corner's vertex above its index, so that both are sorted in one. */
+static uint64_t labelled(const int32_t tet[4], int i) { return (uint64_t)tet[i] << 2 | (uint64_t)i; }
+
+static void order_two(uint64_t *a, uint64_t *b) {
+  const uint64_t low = *a < *b ? *a : *b, high = *a < *b ? *b : *a;
+  *a = low;
+  *b = high;
+}
+
+/* The four vertices ascending: the lowest vertex of each face is corner[0], but for the face opposite it. Always the same five
+ * comparisons, which compilers make without a jump. */
 static void sort_corners(const int32_t tet[4], int32_t corner[4], uint8_t index[4]) {
+  uint64_t key[4] = {labelled(tet, 0), labelled(tet, 1), labelled(tet, 2), labelled(tet, 3)};
+  order_two(&key[0], &key[1]);
+  order_two(&key[2], &key[3]);
+  order_two(&key[0], &key[2]);
+  order_two(&key[1], &key[3]);
+  order_two(&key[1], &key[2]);
   for (int i = 0; i < 4; i++) {
-    int j = i;
-    for (; j > 0 && tet[i] < corner[j - 1]; j--) {
-      corner[j] = corner[j - 1];
-      index[j] = index[j - 1];
-    }
-    corner[j] = tet[i];
-    index[j] = (uint8_t)i;
+    corner[i] = (int32_t)(key[i] >> 2);
+    index[i] = (uint8_t)(key[i] & 3);
   }
 }
 
 static uint64_t add(matcher *m, int32_t vertex, uint64_t faces) {
-  return atomic_fetch_add_explicit(&m->start[vertex], faces, memory_order_relaxed);
+  if (!m->alone) return atomic_fetch_add_explicit(&m->start[vertex], faces, memory_order_relaxed);
+  const uint64_t before = atomic_load_explicit(&m->start[vertex], memory_order_relaxed);
+  atomic_store_explicit(&m->start[vertex], before + faces, memory_order_relaxed);
+  return before;
 }
 
 static uint64_t start_of(const matcher *m, size_t vertex) {
@@ -109,39 +127,56 @@ static void set_start(matcher *m, size_t vertex, uint64_t start) {
   atomic_store_explicit(&m->start[vertex], start, memory_order_relaxed);
 }
 
+static size_t chunk_end(const matcher *m, size_t k) {
+  const size_t end = (k + 1) * CHUNK_TETS;
+  return end < m->tet_count ? end : m->tet_count;
+}
+
 /* Counts bucket v into start[v + 1]. Counters are shared by all threads: sums don't depend on the order. */
-static void count_block(void *user, size_t begin, size_t end, int worker) {
+static void count_chunks(void *user, size_t begin, size_t end, int worker) {
   matcher *m = user;
   (void)worker;
-  for (size_t t = begin; t < end; t++) {
-    if (!laves__tet_usable(m->tets[t], m->vertex_count)) continue;
-    int32_t corner[4];
-    uint8_t index[4];
-    sort_corners(m->tets[t], corner, index);
-    add(m, corner[0] + 1, 3);
-    add(m, corner[1] + 1, 1);
+  for (size_t k = begin; k < end; k++) {
+    chunk seen = {INT32_MAX, -1};
+    for (size_t t = k * CHUNK_TETS; t < chunk_end(m, k); t++) {
+      if (!laves__tet_usable(m->tets[t], m->vertex_count)) continue;
+      int32_t corner[4];
+      uint8_t index[4];
+      sort_corners(m->tets[t], corner, index);
+      add(m, corner[0] + 1, 3);
+      add(m, corner[1] + 1, 1);
+      if (corner[0] < seen.low) seen.low = corner[0];
+      if (corner[1] > seen.high) seen.high = corner[1];
+    }
+    m->chunks[k] = seen;
   }
 }
 
-/* Puts the faces into the buckets of the range; start[v] is the cursor of bucket v. The order within a bucket depends
- * on the threads, but the bucket is sorted afterwards and no two of its faces are equal. */
-static void fill_block(void *user, size_t begin, size_t end, int worker) {
+/* Puts the faces of a tet into the buckets of the range; start[v] is the cursor of bucket v. */
+static void fill_tet(matcher *m, size_t t) {
+  int32_t c[4];
+  uint8_t index[4];
+  sort_corners(m->tets[t], c, index);
+  const uint64_t slot = 4 * (uint64_t)t;
+  if ((size_t)c[0] >= m->vertex_begin && (size_t)c[0] < m->vertex_end) {
+    laves__face_use *use = &m->uses[add(m, c[0], 3) - m->first];
+    use[0] = (laves__face_use){(uint32_t)c[1], (uint32_t)c[2], slot + index[3]};
+    use[1] = (laves__face_use){(uint32_t)c[1], (uint32_t)c[3], slot + index[2]};
+    use[2] = (laves__face_use){(uint32_t)c[2], (uint32_t)c[3], slot + index[1]};
+  }
+  if ((size_t)c[1] >= m->vertex_begin && (size_t)c[1] < m->vertex_end)
+    m->uses[add(m, c[1], 1) - m->first] = (laves__face_use){(uint32_t)c[2], (uint32_t)c[3], slot + index[0]};
+}
+
+/* The order within a bucket depends on the threads, but the bucket is sorted afterwards and no two of its faces are equal. */
+static void fill_chunks(void *user, size_t begin, size_t end, int worker) {
   matcher *m = user;
   (void)worker;
-  for (size_t t = begin; t < end; t++) {
-    if (!laves__tet_usable(m->tets[t], m->vertex_count)) continue;
-    int32_t c[4];
-    uint8_t index[4];
-    sort_corners(m->tets[t], c, index);
-    const uint64_t slot = 4 * (uint64_t)t;
-    if ((size_t)c[0] >= m->vertex_begin && (size_t)c[0] < m->vertex_end) {
-      laves__face_use *use = &m->uses[add(m, c[0], 3) - m->first];
-      use[0] = (laves__face_use){(uint32_t)c[1], (uint32_t)c[2], slot + index[3]};
-      use[1] = (laves__face_use){(uint32_t)c[1], (uint32_t)c[3], slot + index[2]};
-      use[2] = (laves__face_use){(uint32_t)c[2], (uint32_t)c[3], slot + index[1]};
-    }
-    if ((size_t)c[1] >= m->vertex_begin && (size_t)c[1] < m->vertex_end)
-      m->uses[add(m, c[1], 1) - m->first] = (laves__face_use){(uint32_t)c[2], (uint32_t)c[3], slot + index[0]};
+  for (size_t k = begin; k < end; k++) {
+    const chunk *seen = &m->chunks[k];
+    if (seen->high < 0 || (size_t)seen->high < m->vertex_begin || (size_t)seen->low >= m->vertex_end) continue;
+    for (size_t t = k * CHUNK_TETS; t < chunk_end(m, k); t++)
+      if (laves__tet_usable(m->tets[t], m->vertex_count)) fill_tet(m, t);
   }
 }
 
@@ -187,14 +222,14 @@ static size_t largest_range(const matcher *m, size_t capacity) {
 }
 
 static bool count_buckets(matcher *m) {
-  if (!laves__parallel_for(m->context, m->phase, m->tet_count, TETS_PER_BLOCK, count_block, m)) return false;
+  if (!laves__parallel_for(m->context, m->phase, m->chunk_count, CHUNKS_PER_BLOCK, count_chunks, m)) return false;
   for (size_t v = 0; v < m->vertex_count; v++) set_start(m, v + 1, start_of(m, v + 1) + start_of(m, v));
   return true;
 }
 
 static bool match_range(matcher *m) {
   m->first = start_of(m, m->vertex_begin);
-  if (!laves__parallel_for(m->context, m->phase, m->tet_count, TETS_PER_BLOCK, fill_block, m)) return false;
+  if (!laves__parallel_for(m->context, m->phase, m->chunk_count, CHUNKS_PER_BLOCK, fill_chunks, m)) return false;
   reset_cursors(m);
   return laves__parallel_for(m->context, m->phase, m->vertex_end - m->vertex_begin, BUCKETS_PER_BLOCK, group_block, m);
 }
@@ -207,11 +242,17 @@ laves_result laves__match_faces(laves_context *context, const char *phase, const
                .tets = tets,
                .tet_count = tet_count,
                .vertex_count = vertex_count,
+               .alone = laves__workers(context) == 1,
+               .chunk_count = (tet_count + CHUNK_TETS - 1) / CHUNK_TETS,
                .fn = fn,
                .user = user};
   size_t largest = 0;
   m.start = laves__alloc_zeroed(context, vertex_count + 1, sizeof *m.start);
-  if (!m.start) return laves__fail_memory(context, error);
+  m.chunks = laves__alloc(context, m.chunk_count, sizeof *m.chunks);
+  if (!m.start || !m.chunks) {
+    result = laves__fail_memory(context, error);
+    goto clean_up;
+  }
   bool complete = count_buckets(&m);
   size_t capacity = start_of(&m, vertex_count) / RANGES + 1;
   if (capacity < RANGE_FACES_MIN) capacity = RANGE_FACES_MIN;
@@ -228,6 +269,7 @@ laves_result laves__match_faces(laves_context *context, const char *phase, const
   if (!complete) result = laves__fail_cancelled(error);
 clean_up:
   laves__free(context, m.uses, largest, sizeof *m.uses);
+  laves__free(context, m.chunks, m.chunk_count, sizeof *m.chunks);
   laves__free(context, m.start, vertex_count + 1, sizeof *m.start);
   return result;
 }

@@ -25,7 +25,11 @@ laves_result laves__boundary_slots(laves_context *context, const char *phase, co
                                    size_t vertex_count, uint64_t **slots, size_t *count, laves_error *error);
 
 /* Whether the corners of a tet are different and in [0, vertex_count). */
-bool laves__tet_usable(const int32_t tet[4], size_t vertex_count);
+static inline bool laves__tet_usable(const int32_t tet[4], size_t vertex_count) {
+  for (int i = 0; i < 4; i++)
+    if (tet[i] < 0 || (size_t)tet[i] >= vertex_count) return false;
+  return tet[0] != tet[1] && tet[0] != tet[2] && tet[0] != tet[3] && tet[1] != tet[2] && tet[1] != tet[3] && tet[2] != tet[3];
+}
 
 /* The corners of a face so that it looks away from the fourth corner; `orientation` is the tet's, from laves__orient3d
  * (a flat tet counts as positive). */

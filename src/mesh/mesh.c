@@ -4,9 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-const uint8_t laves__tet_face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-const uint8_t laves__tet_edge[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-
 static laves_mesh *create(laves_context *context, size_t vertex_count, size_t tet_count, size_t face_count, bool regions,
                           bool face_tags, bool hollow) {
   laves_mesh *mesh = laves__alloc_zeroed(context, 1, sizeof *mesh);

@@ -54,8 +54,8 @@ laves_result laves__mesh_require_arrays(const laves_mesh *mesh, const char *what
 bool laves__mesh_add_group(laves_mesh *mesh, int dimension, int32_t tag, const char *name);
 
 /* The vertices of the face opposite corner i of a positive tet, seen counter-clockwise from outside. */
-extern const uint8_t laves__tet_face[4][3];
+static const uint8_t laves__tet_face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 /* The corners of edge i: 01 02 03 12 13 23; the opposite edge of i is 5 - i. */
-extern const uint8_t laves__tet_edge[6][2];
+static const uint8_t laves__tet_edge[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
 #endif

@@ -71,7 +71,7 @@ static void join_sectors(uint32_t *sector, uint32_t a, uint32_t b) {
 static bool is_smooth(const laves__surface *s, uint32_t h) {
   const uint32_t g = s->across[h];
   if (g == LAVES__NONE || point_of(s, h) == point_of(s, g)) return false;
-  return v3_dot(s->face_normals[h / 3], s->face_normals[g / 3]) >= LAVES__CREASE_COSINE;
+  return v3_dot(laves__face_normal(s, h / 3), laves__face_normal(s, g / 3)) >= LAVES__CREASE_COSINE;
 }
 
 static void find_sectors(corners *c) {
@@ -87,7 +87,7 @@ static void find_sectors(corners *c) {
 
 /* The angle between the faces beside an edge, with its sign: positive where convex. */
 static double edge_angle(const laves__surface *s, uint32_t h, laves__vec3 along) {
-  const laves__vec3 m = s->face_normals[h / 3], n = s->face_normals[s->across[h] / 3];
+  const laves__vec3 m = laves__face_normal(s, h / 3), n = laves__face_normal(s, s->across[h] / 3);
   return laves__angle(v3_dot(v3_cross(m, n), along), v3_dot(m, n));
 }
 

@@ -35,7 +35,7 @@ typedef struct creases {
 static bool is_crease(const laves__surface *s, uint32_t h) {
   const uint32_t g = s->across[h];
   if (g == LAVES__NONE || g < h) return false;
-  return v3_dot(s->face_normals[h / 3], s->face_normals[g / 3]) < LAVES__CREASE_COSINE;
+  return v3_dot(laves__face_normal(s, h / 3), laves__face_normal(s, g / 3)) < LAVES__CREASE_COSINE;
 }
 
 static bool find_segments(creases *c) {

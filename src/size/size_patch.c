@@ -29,7 +29,7 @@ static laves_result patches_of_triangles(laves_context *context, const laves__su
   *count = s->face_count;
   for (uint32_t f = 0; f < s->face_count; f++) {
     laves__patch *p = &(*patches)[f];
-    *p = (laves__patch){.normal = s->face_normals[f], .face = f};
+    *p = (laves__patch){.normal = laves__face_normal(s, f), .face = f};
     for (int i = 0; i < 3; i++) p->corners[i] = s->points[s->faces[f][i]];
     set_triangle(p);
   }

@@ -30,7 +30,7 @@ static double shoot(const laves__surface *s, const laves__patch *p, laves__vec3 
     way += hit.distance;
     skip = hit.slot;
     if (!laves__surface_bounds_at(s, hit.slot, v3_mad(start, direction, hit.distance))) continue;
-    return way > 0 && v3_dot(s->face_normals[hit.slot], p->normal) < opposed ? way : INFINITY;
+    return way > 0 && v3_dot(laves__face_normal(s, hit.slot), p->normal) < opposed ? way : INFINITY;
   }
   return INFINITY;
 }

@@ -1,10 +1,12 @@
 /* Zones grow from the tets that break the promise: first some cells around them, in the end the whole component. */
 #include "stuff/zone.h"
 
+#include "mesh/shape_batch.h"
+
 static const uint32_t all_sites = (UINT32_C(1) << LAVES__C15_SITES) - 1;
 static const double radians = 3.14159265358979323846 / 180;
 
-/* Whether the tet is outside the promised window. Improvement holds a window a little inside, so rounding never decides. */
+/* Whether a tet is outside the promised window. Improvement holds a window a little inside, so rounding never decides. */
 static bool is_broken(const laves__layer *layer, size_t tet, const laves__guarantee *promised) {
   if (layer->tet[tet][0] < 0) return false;
   laves__vec3 p[4];
@@ -20,12 +22,32 @@ static laves__guarantee promised_window(const laves__guarantee *g) {
   return promised;
 }
 
+/* The same for the tets of a batch: how many are. A quotient of positive numbers is at least 1 when the first is no less than the
+ * second, so laves__guarantee_margin() need not divide to be compared with 1. */
+static size_t count_broken_of(laves__shape_batch *batch, int count, const laves__guarantee *promised) {
+  double fits[LAVES__SHAPE_BATCH];
+  size_t broken = 0;
+  laves__shape_batch_measure(batch);
+  laves__shape_batch_fits(batch, 1 - promised->cos_min, 1 + promised->cos_max, fits);
+  for (int lane = 0; lane < count; lane++) broken += fits[lane] == 0;
+  return broken;
+}
+
 size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced) {
   const laves__guarantee promised = promised_window(guarantee);
-  size_t count = 0;
-  for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(layer->context, "stuff", t, layer->tet_count); t++)
-    count += is_broken(layer, t, &promised) && !(forced && forced[t]);
-  return count;
+  laves__shape_batch batch = {.determinant = {0}}; /* lanes that stay empty are measured, too */
+  size_t broken = 0;
+  int count = 0;
+  for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(layer->context, "stuff", t, layer->tet_count); t++) {
+    if (layer->tet[t][0] < 0 || (forced && forced[t])) continue;
+    laves__vec3 p[4];
+    laves__layer_points(layer, (int32_t)t, p);
+    laves__shape_batch_set(&batch, count++, p);
+    if (count < LAVES__SHAPE_BATCH) continue;
+    broken += count_broken_of(&batch, count, &promised);
+    count = 0;
+  }
+  return broken + count_broken_of(&batch, count, &promised);
 }
 
 static void zone_cells(laves__lattice *lattice, laves__vec3 centre, int reach) {

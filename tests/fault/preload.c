@@ -5,8 +5,8 @@
  *   FAULT_FOR_GOOD   set: all that follow too
  *   FAULT_COUNT=FILE where to write how many calls there were, at the end of the program
  *
- * Calls count from the start of main() to its end, and of that thread alone, for what OpenMP asks for before main() it can't do
- * without. */
+ * Calls count from the start of main() to its end, and of that thread alone, for what libraries ask for before main() they may be
+ * unable to do without. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

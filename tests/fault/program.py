@@ -178,7 +178,7 @@ def main():
     arguments.add_argument("--preload", help="where it is missing, no allocation fails")
     arguments.add_argument("--every", action="store_true")
     given = arguments.parse_args()
-    os.sched_setaffinity(0, list(os.sched_getaffinity(0))[:1])  # one thread: OpenMP ends the program when it finds no memory
+    os.sched_setaffinity(0, list(os.sched_getaffinity(0))[:1])  # one thread, so that the calls come in the same order each time
     every = given.every or bool(os.environ.get("LAVES_EVERY"))
     place, wrong = Place(given.program), 0
     try:

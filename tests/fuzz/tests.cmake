@@ -13,7 +13,7 @@ if(LAVES_FUZZERS)
   add_library(laves-fuzzed STATIC ${sources})
   target_include_directories(laves-fuzzed PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include
     PRIVATE ${PROJECT_SOURCE_DIR}/src ${LUA_INCLUDE_DIR})
-  target_compile_definitions(laves-fuzzed PRIVATE LAVES_BUILD PUBLIC LAVES_VALIDATE LAVES_PTHREADS)
+  target_compile_definitions(laves-fuzzed PRIVATE LAVES_BUILD PUBLIC LAVES_VALIDATE)
   target_compile_options(laves-fuzzed PUBLIC -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all)
   target_link_libraries(laves-fuzzed PUBLIC ZLIB::ZLIB ${LUA_LIBRARIES} Threads::Threads m)
 endif()

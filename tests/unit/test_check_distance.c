@@ -115,6 +115,7 @@ static void tree_finds_the_nearest(void **state) {
   laves__boundary boundary;
   laves__boundary_tree *tree;
   float edge = 0;
+  size_t near = LAVES__NO_TRIANGLE;
   const laves__vec3 origin = v3(1, 2, 3);
   assert_int_equal(laves__find_boundary(*state, mesh, &boundary, NULL), LAVES_OK);
   assert_int_equal(boundary.count, mesh->face_count);
@@ -123,8 +124,15 @@ static void tree_finds_the_nearest(void **state) {
   for (int i = 0; i < 15 * 15 * 15; i++) {
     const laves__vec3 p = v3(i % 15 * 0.47 - 1.7, i / 15 % 15 * 0.49 - 1.9, i / 225 * 0.51 - 2.1);
     const double distance = cube_distance(p);
-    assert_float_equal(laves__boundary_tree_distance(tree, v3_sub(p, origin), INFINITY, &edge), distance, 1e-12);
-    assert_float_equal(laves__boundary_tree_distance(tree, v3_sub(p, origin), distance, &edge), distance, 1e-12);
+    size_t none = LAVES__NO_TRIANGLE, any = (size_t)i % mesh->face_count;
+    const double found = laves__boundary_tree_distance(tree, v3_sub(p, origin), INFINITY, &edge, &none);
+    assert_float_equal(found, distance, 1e-12);
+    assert_true(none < mesh->face_count);
+    assert_float_equal(laves__boundary_tree_distance(tree, v3_sub(p, origin), distance, &edge, &none), distance, 1e-12);
+    /* Wherever the search begins, it ends in the same place. */
+    assert_true(laves__boundary_tree_distance(tree, v3_sub(p, origin), INFINITY, &edge, &any) == found);
+    assert_true(laves__boundary_tree_distance(tree, v3_sub(p, origin), INFINITY, &edge, &near) == found);
+    if (found > 0) assert_int_equal(any, near);
   }
   laves__boundary_tree_free(tree);
   laves__boundary_free(&boundary);
@@ -136,8 +144,9 @@ static void tree_of_nothing(void **state) {
   laves__boundary empty = {0};
   laves__boundary_tree *tree;
   float edge = 0;
+  size_t near = LAVES__NO_TRIANGLE;
   assert_int_equal(laves__boundary_tree_build(*state, mesh, &empty, v3(0, 0, 0), NULL, 0, &tree, NULL), LAVES_OK);
-  assert_true(laves__boundary_tree_distance(tree, v3(0, 0, 0), INFINITY, &edge) == INFINITY);
+  assert_true(laves__boundary_tree_distance(tree, v3(0, 0, 0), INFINITY, &edge, &near) == INFINITY);
   laves__boundary_tree_free(tree);
   laves_mesh_free(mesh);
 }

@@ -259,11 +259,47 @@ static void quality_is_one_on_the_border(void **state) {
   assert_true(laves__quality(&m, inverted, 1, 0) < 0);
 }
 
+/* Many at once have the digits of each alone, whatever the window, and of tets that are squeezed and turned over, too. */
+static void batches_have_the_same_digits(void **state) {
+  (void)state;
+  static const laves__window windows[] = {{.min_dihedral = 40, .max_dihedral = 125, .volume_length = 0.6},
+                                          {.min_dihedral = 25, .max_dihedral = 140},
+                                          {.min_dihedral = 40, .max_dihedral = 125, .held_min = 30, .held_max = 120}};
+  stages s;
+  stages_begin(&s, solids[1], 0.2, 0);
+  stages_snap(&s);
+  laves__layer *l = &s.layer;
+  double *together = calloc(l->tet_count, sizeof *together);
+  assert_non_null(together);
+  assert_true(l->tet_count > 200);
+  for (size_t v = 0; v < l->vertex_count; v++)
+    if (v % 7 == 0) l->position[v].x += (double)(v % 5) * 0.3 - 0.6;
+  l->tet[17][0] = -1;
+  for (size_t i = 0; i < LAVES__COUNT_OF(windows); i++) {
+    const laves__measure m = laves__measure_of(&windows[i]);
+    int flat = 0, standing = 0;
+    for (size_t begin = 0; begin < l->tet_count; begin += 150) { /* whole batches and a rest */
+      const size_t end = begin + 150 < l->tet_count ? begin + 150 : l->tet_count;
+      laves__measure_tets(&m, l, begin, end, together + begin);
+    }
+    for (size_t t = 0; t < l->tet_count; t++) {
+      if (l->tet[t][0] < 0) continue;
+      const double alone = laves__layer_quality(&m, l, (int32_t)t);
+      assert_true(together[t] == alone);
+      flat += alone <= LAVES__FLAT;
+      standing += alone > LAVES__FLAT;
+    }
+    assert_true(flat > 0 && standing > 0);
+  }
+  free(together);
+  stages_end(&s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(smoothing_never_lowers_the_worst),     cmocka_unit_test(undone_smoothing_leaves_no_trace),
       cmocka_unit_test(contraction_helps_or_leaves_no_trace), cmocka_unit_test(the_stage_keeps_its_promises),
-      cmocka_unit_test(quality_is_one_on_the_border),
+      cmocka_unit_test(quality_is_one_on_the_border),         cmocka_unit_test(batches_have_the_same_digits),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

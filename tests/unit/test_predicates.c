@@ -110,10 +110,36 @@ static void long_differences(void **state) {
   assert_int_equal(laves__orient3d(v3(0x1p-80, 0x1p-80, 0), b, c, d), 0);
 }
 
+/* A plane that is asked of many points answers as the predicate does: random points, points of the plane, those next to it. */
+static void planes_agree(void **state) {
+  (void)state;
+  uint64_t seed = 5;
+  int zeros = 0;
+  for (int n = 0; n < 2000; n++) {
+    int64_t x[4][3];
+    laves__vec3 p[4];
+    for (int i = 0; i < 3; i++)
+      for (int k = 0; k < 3; k++) x[i][k] = random_within(&seed, (int64_t)1 << 20);
+    for (int i = 0; i < 3; i++) p[i] = v3((double)x[i][0], (double)x[i][1], (double)x[i][2]);
+    const laves__plane plane = laves__plane_of(p[0], p[1], p[2]);
+    for (int m = 0; m < 20; m++) {
+      const int64_t s = random_within(&seed, 50), t = random_within(&seed, 50), off = m % 4 == 3 ? m / 4 - 2 : 0;
+      for (int k = 0; k < 3; k++)
+        x[3][k] = m % 4 == 0 ? random_within(&seed, (int64_t)1 << 20)
+                             : x[0][k] + s * (x[1][k] - x[0][k]) + t * (x[2][k] - x[0][k]) + (k == n % 3 ? off : 0);
+      p[3] = v3((double)x[3][0], (double)x[3][1], (double)x[3][2]);
+      const int side = laves__plane_side(&plane, p[3]);
+      assert_int_equal(side, laves__orient3d(p[0], p[1], p[2], p[3]));
+      zeros += side == 0;
+    }
+  }
+  assert_true(zeros > 10000);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(knows_positive), cmocka_unit_test(random_points),    cmocka_unit_test(coplanar_and_nearly),
-      cmocka_unit_test(far_away),       cmocka_unit_test(long_differences),
+      cmocka_unit_test(far_away),       cmocka_unit_test(long_differences), cmocka_unit_test(planes_agree),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,8 +1,8 @@
 /* Loops over batches, compiled for wider vectors where the machine has them. */
-#ifndef LAVES_DOMAIN_WIDE_H
-#define LAVES_DOMAIN_WIDE_H
+#ifndef LAVES_BASE_WIDE_H
+#define LAVES_BASE_WIDE_H
 
-#include <stddef.h> /* for __GLIBC__ */
+#include <stdint.h> /* for __GLIBC__ */
 
 /* Before a function: the same loops for wider vectors as well; without fused multiply-add, so with the same bits. Sanitizers
  * start too late for the resolvers of clones. */
