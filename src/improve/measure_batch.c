@@ -44,7 +44,7 @@ LAVES__WIDE static void measure_batch(const laves__measure *m, batch *restrict b
     const double length = LAVES__SQRT2 * volume6 / (mean * sqrt(mean)) * length_scale;
     const double q = lesser(length, lesser(high, low));
     const bool held = !(1 + least < held_low) & !(1 - most < held_high);
-    const double standing = held & (q > LAVES__FLAT) ? q : LAVES__FLAT;
+    const double standing = (held & (q > LAVES__FLAT)) ? q : LAVES__FLAT;
     b->quality[i] = volume6 > LAVES__FLAT * b->cube[i] ? standing : volume6 / b->cube[i];
   }
 }

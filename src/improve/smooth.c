@@ -33,18 +33,50 @@ static const double feature_reach = 4;    /* local sizes: how far from its creas
 static const double least_gain = 0.005;   /* foretold gains below this are not worth a trial */
 static const double accept_share = 0.1, good_share = 0.5, exact_enough = 0.02;
 
+/* Functions by their value and gradient, coordinate by coordinate, so that several are looked at in one step. Behind the last
+ * stand zeros up to a multiple of STEP. */
+enum { STEP = 4 };
+_Static_assert(TERMS_MAX % STEP == 0 && WORKING_MAX % STEP == 0, "room for the zeros");
+
 typedef struct bundle {
   int count;
-  double value[TERMS_MAX];
-  laves__vec3 gradient[TERMS_MAX];
-  int working_count, working[WORKING_MAX]; /* the functions that may carry weight */
+  double value[TERMS_MAX], x[TERMS_MAX], y[TERMS_MAX], z[TERMS_MAX];
+  /* The functions that may carry weight: which they are, and copies of them, which lie side by side. */
+  int working_count, working[WORKING_MAX];
+  double working_value[WORKING_MAX], working_x[WORKING_MAX], working_y[WORKING_MAX], working_z[WORKING_MAX];
   double weight[WORKING_MAX], model[WORKING_MAX];
 } bundle;
+
+static inline laves__vec3 gradient_of(const bundle *b, int k) { return v3(b->x[k], b->y[k], b->z[k]); }
+
+static inline void set_gradient(bundle *b, int k, laves__vec3 gradient) {
+  b->x[k] = gradient.x;
+  b->y[k] = gradient.y;
+  b->z[k] = gradient.z;
+}
 
 static void add_term(bundle *b, double value, laves__vec3 gradient) {
   if (b->count == TERMS_MAX) return;
   b->value[b->count] = value;
-  b->gradient[b->count++] = gradient;
+  set_gradient(b, b->count++, gradient);
+}
+
+static void add_working(bundle *b, int k, double weight) {
+  const int at = b->working_count++;
+  if (at % STEP == 0)
+    for (int i = at; i < at + STEP; i++) b->working_value[i] = b->working_x[i] = b->working_y[i] = b->working_z[i] = 0;
+  b->working[at] = k;
+  b->working_value[at] = b->value[k];
+  b->working_x[at] = b->x[k];
+  b->working_y[at] = b->y[k];
+  b->working_z[at] = b->z[k];
+  b->weight[at] = weight;
+}
+
+/* model = value + tau * gradient . sum, of STEP functions. */
+static inline void find_models(const double *value, const double *x, const double *y, const double *z, double tau,
+                               laves__vec3 sum, double *model) {
+  for (int i = 0; i < STEP; i++) model[i] = value[i] + tau * (x[i] * sum.x + y[i] * sum.y + z[i] * sum.z);
 }
 
 /* The gradient, with respect to corner c, of the dot product d of unit normals i and j. */
@@ -108,15 +140,19 @@ static void fill_bundle(bundle *b, const laves__measure *m, const laves__layer *
     const laves__vec3 n = layer->normal[vertex];
     const bool on_crease = laves__layer_hold(layer, vertex).kind == LAVES__HOLD_CREASE;
     for (int k = 0; k < b->count; k++) {
-      const laves__vec3 along = v3_scale(n, v3_dot(b->gradient[k], n));
-      b->gradient[k] = on_crease ? along : v3_sub(b->gradient[k], along);
+      const laves__vec3 g = gradient_of(b, k), along = v3_scale(n, v3_dot(g, n));
+      set_gradient(b, k, on_crease ? along : v3_sub(g, along));
     }
   }
-  b->working_count = 1;
-  b->weight[0] = 1;
-  b->working[0] = 0;
+  for (int k = b->count; k % STEP != 0; k++) {
+    b->value[k] = 0;
+    set_gradient(b, k, v3(0, 0, 0));
+  }
+  int worst = 0;
   for (int k = 1; k < b->count; k++)
-    if (b->value[k] < b->value[b->working[0]]) b->working[0] = k;
+    if (b->value[k] < b->value[worst]) worst = k;
+  b->working_count = 0;
+  if (b->count > 0) add_working(b, worst, 1);
 }
 
 /* Moves weight among the working set, from the function with the largest model to the one with the least, until they are
@@ -124,16 +160,17 @@ static void fill_bundle(bundle *b, const laves__measure *m, const laves__layer *
 static double level_working_set(bundle *b, double tau, double least, laves__vec3 *sum) {
   for (int exchange = 0;; exchange++) {
     int low = 0, high = -1;
+    for (int i = 0; i < b->working_count; i += STEP)
+      find_models(b->working_value + i, b->working_x + i, b->working_y + i, b->working_z + i, tau, *sum, b->model + i);
     for (int i = 0; i < b->working_count; i++) {
-      const int k = b->working[i];
-      b->model[i] = b->value[k] + tau * v3_dot(b->gradient[k], *sum);
       if (b->model[i] < b->model[low]) low = i;
       if (b->weight[i] > 0 && (high < 0 || b->model[i] > b->model[high])) high = i;
     }
     LAVES_ASSERT(high >= 0); /* weights sum to 1 */
     const double difference = b->model[high] - b->model[low];
     if (difference <= exact_enough * fabs(b->model[low] - least) || exchange == EXCHANGES_MAX) return b->model[low];
-    const laves__vec3 across = v3_sub(b->gradient[b->working[low]], b->gradient[b->working[high]]);
+    const laves__vec3 across = v3(b->working_x[low] - b->working_x[high], b->working_y[low] - b->working_y[high],
+                                  b->working_z[low] - b->working_z[high]);
     const double curvature = tau * v3_norm2(across);
     double move = b->weight[high];
     if (curvature * move > difference) move = difference / curvature;
@@ -147,11 +184,14 @@ static double level_working_set(bundle *b, double tau, double least, laves__vec3
 static int least_model(const bundle *b, double tau, laves__vec3 sum, double *model) {
   int low = 0;
   *model = HUGE_VAL;
-  for (int k = 0; k < b->count; k++) {
-    const double value = b->value[k] + tau * v3_dot(b->gradient[k], sum);
-    if (value < *model) {
-      *model = value;
-      low = k;
+  for (int k = 0; k < b->count; k += STEP) {
+    double models[STEP];
+    find_models(b->value + k, b->x + k, b->y + k, b->z + k, tau, sum, models);
+    for (int i = 0; i < STEP && k + i < b->count; i++) {
+      if (models[i] < *model) {
+        *model = models[i];
+        low = k + i;
+      }
     }
   }
   return low;
@@ -161,7 +201,7 @@ static int least_model(const bundle *b, double tau, laves__vec3 sum, double *mod
  * weight, so the problem is solved on a working set that grows by the function which the last step would make the worst. */
 static laves__vec3 solve_bundle(bundle *b, double tau, double least, double longest, double *gain) {
   laves__vec3 sum = {0, 0, 0};
-  for (int i = 0; i < b->working_count; i++) sum = v3_mad(sum, b->gradient[b->working[i]], b->weight[i]);
+  for (int i = 0; i < b->working_count; i++) sum = v3_mad(sum, gradient_of(b, b->working[i]), b->weight[i]);
   for (;;) {
     const double level = level_working_set(b, tau, least, &sum);
     double model;
@@ -171,8 +211,7 @@ static laves__vec3 solve_bundle(bundle *b, double tau, double least, double long
     bool known = false;
     for (int i = 0; i < b->working_count; i++) known |= b->working[i] == low;
     if (known) break;
-    b->weight[b->working_count] = 0;
-    b->working[b->working_count++] = low;
+    add_working(b, low, 0);
   }
   laves__vec3 step = v3_scale(sum, tau);
   const double length = v3_norm(step);
