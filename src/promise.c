@@ -170,7 +170,7 @@ static bool widen_zone(laves__run *r, const laves__components *now, int round) {
   return !(crowd || round >= ALL) || laves__zone_components(&r->lattice);
 }
 
-/* What is mended: the layer as it was improved the first time, its components before that, and those of what takes its place. */
+/* What is mended: the layer as it was improved last, its components before that, and those of what takes its place. */
 typedef struct mending {
   laves__layer improved;
   laves__components *before, now;
@@ -193,6 +193,23 @@ static laves_result make_zone(laves__run *r, mending *m) {
   return LAVES_OK;
 }
 
+/* What was made anew and improved is what comes back in the next round. */
+static laves_result start_from_here(laves__run *r, mending *m) {
+  bool *again = laves__alloc(r->context, m->now.count, sizeof *again);
+  if (again) laves__find_broken_walls(r->guarantee, &r->layer, r->forced, &m->now, again);
+  const bool memory = again && laves__twins_bring_back(&m->twins, &r->layer);
+  laves__twins_free(&m->twins);
+  laves__free(r->context, m->again, m->before->count, sizeof *m->again);
+  m->again = again;
+  laves__layer_free(&m->improved);
+  laves__components_free(m->before);
+  m->improved = r->layer;
+  *m->before = m->now;
+  memset(&r->layer, 0, sizeof r->layer);
+  memset(&m->now, 0, sizeof m->now);
+  return memory ? LAVES_OK : laves__fail_memory(r->context, r->error);
+}
+
 /* Where more than this share of what was made anew breaks the promise before it is improved, only all of improvement helps. */
 static const double dense_share = 0.003;
 
@@ -202,7 +219,8 @@ static laves_result find_zone(laves__run *r, mending *m) {
   enum { ROUNDS = 8 };
   for (int round = 0; round < ROUNDS; round++) {
     laves_result result = make_zone(r, m);
-    m->complete = (double)laves__count_broken(r->guarantee, &r->layer, NULL) > dense_share * (double)m->now.vertex_count;
+    m->complete =
+        m->complete || (double)laves__count_broken(r->guarantee, &r->layer, NULL) > dense_share * (double)m->now.vertex_count;
     if (result == LAVES_OK) result = m->complete ? improve_layer(r) : rescue(r);
     if (result == LAVES_OK) result = find_forced(r);
     if (result != LAVES_OK) return result;
@@ -210,6 +228,8 @@ static laves_result find_zone(laves__run *r, mending *m) {
     if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
     if (broken == 0) return LAVES_OK;
     if (!widen_zone(r, &m->now, round + 1)) return laves__fail_memory(r->context, r->error);
+    if (m->complete && round + 1 < ROUNDS) result = start_from_here(r, m);
+    if (result != LAVES_OK) return result;
   }
   return LAVES_OK;
 }

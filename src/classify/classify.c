@@ -420,8 +420,12 @@ laves_result laves__classify(const laves__frame *frame, laves__lattice *lattice,
   const laves__record *overflow = result == LAVES_OK ? find_overflow(lattice) : NULL;
   if (overflow) {
     const laves__vec3 at = laves__frame_to_input(frame, laves__site_position(overflow->xyz, 0));
-    result = laves__fail(error, LAVES_ERROR_INPUT,
-                         "the solid reaches beyond its bounds near (%g, %g, %g); give bounds that contain it", at.x, at.y, at.z);
+    result =
+        laves__fail(error, LAVES_ERROR_INPUT,
+                    frame->oracle->source ? "the surface is so open that its inside reaches far beyond it, as near (%g, %g, %g); "
+                                            "close its holes, or raise the winding number that counts as inside"
+                                          : "the solid reaches beyond its bounds near (%g, %g, %g); give bounds that contain it",
+                    at.x, at.y, at.z);
   }
   laves__free(context, c.cell_phi, c.list.count * LAVES__BRICK_CELLS, sizeof *c.cell_phi);
   laves__free(context, c.cell_side, c.list.count, LAVES__BRICK_CELLS);

@@ -4,7 +4,7 @@
  *
  * Two remedies, tried in turn until neither helps: a vertex of the face takes another hold that is known around it, if that
  * leaves fewer illegal faces and edges around it; or a corner near by moves to another vertex, and the old one takes what suits
- * it. */
+ * it. The second is dear, and where many faces are illegal corners are closer than vertices, and have nowhere to go. */
 #include "features/keep.h"
 
 enum { CANDIDATES_MAX = 48, ROUNDS = 4 };
@@ -130,11 +130,22 @@ static bool is_legal(const laves__keeping *k, uint32_t face) {
   return laves__face_is_legal(k->features, hold);
 }
 
+/* Where more faces than these are illegal, in number and share, corners stay. */
+static const size_t crowd_min = 100;
+static const double crowd_share = 0.05;
+
+static bool is_crowded(const laves__keeping *k) {
+  size_t illegal = 0;
+  for (uint32_t f = 0; f < k->rim.face_count; f++) illegal += !is_legal(k, f);
+  return illegal > crowd_min && (double)illegal > crowd_share * (double)k->rim.face_count;
+}
+
 void laves__mend_faces(laves__keeping *k) {
+  const bool corners_stay = is_crowded(k);
   bool again = true;
   for (int round = 0; round < ROUNDS && again; round++) {
     again = false;
     for (uint32_t f = 0; f < k->rim.face_count && !laves__cancelled_at(k->context, "features", f, k->rim.face_count); f++)
-      while (!is_legal(k, f) && (relabel_face(k, f) || move_corner_near(k, f))) again = true;
+      while (!is_legal(k, f) && (relabel_face(k, f) || (!corners_stay && move_corner_near(k, f)))) again = true;
   }
 }

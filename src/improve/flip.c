@@ -10,8 +10,8 @@
  *      \ | /  .          \ | /  .        a new edge
  *        b   v2            b   v2
  *
- * Tets of positive volume with the same outer faces fill the same space, so nothing else need be looked at inside; on the
- * boundary the new edge must not be there already. Source: [freitag1997], [klingner2007]. */
+ * Tets of positive volume with the same outer faces fill the same space. But where the solid is so thin or rough that the mesh
+ * overlaps itself, an edge or face that is new to them may be there elsewhere; then the flip is left out. Source: [freitag1997], [klingner2007]. */
 #include "improve/flip.h"
 
 #include "improve/fit.h"
@@ -237,6 +237,43 @@ static bool without_face(const flipping *f, int32_t tet, int corner, change *c) 
   return has_room(f, c);
 }
 
+/* ---- what is there elsewhere ---- */
+
+static bool is_in(const int32_t t[4], int32_t v) { return t[0] == v || t[1] == v || t[2] == v || t[3] == v; }
+
+static bool has_all(const int32_t t[4], const int32_t *vertices, int count) {
+  for (int i = 0; i < count; i++)
+    if (!is_in(t, vertices[i])) return false;
+  return true;
+}
+
+/* Whether the vertices of an edge or face, of which one moves, are those of a tet that stays, and of none that goes. */
+static bool is_elsewhere(const flipping *f, const change *c, const int32_t *vertices, int count) {
+  const laves__layer *layer = f->layer;
+  int lead = 0;
+  while (lead < count && !laves__layer_moves(layer, vertices[lead])) lead++;
+  if (lead == count) return false; /* deep inside, where nothing overlaps */
+  for (int i = 0; i < c->old_count; i++)
+    if (has_all(layer->tet[c->old[i]], vertices, count)) return false;
+  const laves__star *star = &layer->star[vertices[lead]];
+  for (int i = 0; i < star->count; i++)
+    if (has_all(layer->tet[star->tet[i]], vertices, count)) return true;
+  return false;
+}
+
+static bool overlaps(const flipping *f, const change *c) {
+  for (int i = 0; i < c->fresh_count; i++) {
+    const int32_t *t = c->fresh[i];
+    for (int e = 0; e < 6; e++)
+      if (is_elsewhere(f, c, (const int32_t[]){t[laves__tet_edge[e][0]], t[laves__tet_edge[e][1]]}, 2)) return true;
+    for (int k = 0; k < 4; k++) {
+      const uint8_t *face = laves__tet_face[k];
+      if (is_elsewhere(f, c, (const int32_t[]){t[face[0]], t[face[1]], t[face[2]]}, 3)) return true;
+    }
+  }
+  return false;
+}
+
 /* ---- making them ---- */
 
 static bool remember(laves__journal *j, const laves__layer *layer, const int32_t t[4]) {
@@ -297,5 +334,5 @@ bool laves__flip_tet(const laves__frame *frame, const laves__measure *m, laves__
   }
   for (int corner = 0; corner < 4; corner++)
     if (without_face(&f, tet, corner, &c) && c.worst - c.before > best.worst - best.before) best = c;
-  return best.old_count > 0 && make(layer, &best, slots, journal);
+  return best.old_count > 0 && !overlaps(&f, &best) && make(layer, &best, slots, journal);
 }
