@@ -11,7 +11,8 @@
  *        b   v2            b   v2
  *
  * Tets of positive volume with the same outer faces fill the same space. But where the solid is so thin or rough that the mesh
- * overlaps itself, an edge or face that is new to them may be there elsewhere; then the flip is left out. Source: [freitag1997], [klingner2007]. */
+ * overlaps itself, an edge or face that is new to them may be there elsewhere; then the flip is left out. Source: [freitag1997],
+ * [klingner2007]. */
 #include "improve/flip.h"
 
 #include "improve/fit.h"

@@ -289,6 +289,27 @@ static laves_result mesh_function(laves_context *context, const job_place *place
   return result;
 }
 
+/* Parted vertices, too, and a file of it. */
+static laves_result mesh_streamed(laves_context *context, const job_place *place, const char *what, job_outcome *out) {
+  laves_domain *domain = NULL;
+  laves_mesh *mesh = NULL;
+  laves_report report;
+  char path[PATH_BYTES];
+  laves_options options = options_of_size(0.4);
+  options.streamed = true;
+  snprintf(path, sizeof path, "%s/streamed.vtu", place->outputs);
+  laves_result result = open_domain(context, place, what, &domain, &out->error);
+  if (result == LAVES_OK) result = laves_generate(context, domain, &options, &mesh, &report, &out->error);
+  if (mesh) result = laves_mesh_write(context, mesh, path, NULL, &out->error);
+  if (result == LAVES_OK) {
+    take_mesh(out, mesh);
+    take_file(out, path);
+  }
+  laves_mesh_free(mesh);
+  laves_domain_free(domain);
+  return result;
+}
+
 static laves_result make_tiling(laves_context *context, const job_place *place, const char *what, job_outcome *out) {
   (void)place, (void)what;
   laves_mesh *mesh = NULL;
@@ -494,6 +515,7 @@ const job jobs[] = {
     {"mesh parts", mesh_parts, "parts.off"},
     {"mesh with drawn features", mesh_drawn, "box(1, 1, 1)"},
     {"mesh graded", mesh_graded, "cube.obj"},
+    {"mesh streamed", mesh_streamed, "tag('a', sphere(1)) - sphere(0.8)"},
     {"mesh tiling", make_tiling, ""},
     {"estimate", estimate, "cube.obj"},
     {"check a mesh", check_mesh, ""},
