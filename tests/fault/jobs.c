@@ -304,6 +304,7 @@ static laves_result mesh_streamed(laves_context *context, const job_place *place
   if (result == LAVES_OK) {
     take_mesh(out, mesh);
     take_file(out, path);
+    remove(path);
   }
   laves_mesh_free(mesh);
   laves_domain_free(domain);
