@@ -213,28 +213,40 @@ static laves_result start_from_here(laves__run *r, mending *m) {
 /* Where more than this share of what was made anew breaks the promise before it is improved, only all of improvement helps. */
 static const double dense_share = 0.003;
 
+/* One round: what was made anew, improved; *broken: how many tets break the promise then. */
+static laves_result improve_zone(laves__run *r, mending *m, size_t *broken) {
+  m->complete =
+      m->complete || (double)laves__count_broken(r->guarantee, &r->layer, NULL) > dense_share * (double)m->now.vertex_count;
+  laves_result result = m->complete ? improve_layer(r) : rescue(r);
+  if (result == LAVES_OK) result = find_forced(r);
+  if (result != LAVES_OK) return result;
+  *broken = count_broken(r);
+  if (*broken > 0 || m->complete) return LAVES_OK;
+  m->complete = true;
+  result = improve_layer(r);
+  if (result == LAVES_OK) result = find_forced(r);
+  if (result == LAVES_OK) *broken = count_broken(r);
+  return result;
+}
+
 /* Stuffing in a growing zone, until no tet breaks the promise or nothing more can be stuffed. Where few do, only those are
  * improved meanwhile: it is the zone that is looked for, and to improve all of it in each round would take long. */
 static laves_result find_zone(laves__run *r, mending *m) {
   enum { ROUNDS = 8 };
   for (int round = 0; round < ROUNDS; round++) {
+    size_t broken = 0;
     laves_result result = make_zone(r, m);
-    m->complete =
-        m->complete || (double)laves__count_broken(r->guarantee, &r->layer, NULL) > dense_share * (double)m->now.vertex_count;
-    if (result == LAVES_OK) result = m->complete ? improve_layer(r) : rescue(r);
-    if (result == LAVES_OK) result = find_forced(r);
-    if (result != LAVES_OK) return result;
-    const size_t broken = count_broken(r);
-    if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
-    if (broken == 0) return LAVES_OK;
+    if (result == LAVES_OK) result = improve_zone(r, m, &broken);
+    if (result == LAVES_OK && laves__is_cancelled(r->context)) result = laves__fail_cancelled(r->error);
+    if (result != LAVES_OK || broken == 0) return result;
     if (!widen_zone(r, &m->now, round + 1)) return laves__fail_memory(r->context, r->error);
     if (m->complete && round + 1 < ROUNDS) result = start_from_here(r, m);
     if (result != LAVES_OK) return result;
   }
-  return LAVES_OK;
+  return m->complete ? LAVES_OK : improve_layer(r);
 }
 
-/* Mends the promise, and improves what was made anew. */
+/* Mends the promise. */
 static laves_result mend(laves__run *r, mending *m) {
   m->again = laves__alloc(r->context, m->before->count, sizeof *m->again);
   if (!m->again) return laves__fail_memory(r->context, r->error);
@@ -243,7 +255,6 @@ static laves_result mend(laves__run *r, mending *m) {
   m->improved = r->layer;
   memset(&r->layer, 0, sizeof r->layer);
   laves_result result = find_zone(r, m);
-  if (result == LAVES_OK && !m->complete) result = improve_layer(r);
   if (result == LAVES_OK && !laves__twins_bring_back(&m->twins, &r->layer)) result = laves__fail_memory(r->context, r->error);
   return result;
 }
