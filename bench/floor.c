@@ -4,7 +4,8 @@
  *
  * Prints one line of JSON: wall seconds of filling fresh memory (the system's making of pages included), of filling it again,
  * and, when a file is named, of writing BYTES into it by write(2) from memory that is there; the file is removed. Nothing is
- * flushed to the device, as laves flushes nothing. */
+ * flushed to the device, as laves flushes nothing. Of more bytes than 4 GB so much memory is filled and written again and again,
+ * and seconds of filling are those of BYTES at that rate. */
 #include <fcntl.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -14,6 +15,7 @@
 
 /* As much as laves hands over at once, about. */
 enum { WRITE_BYTES = 1 << 20 };
+#define MEMORY_MAX ((size_t)4 << 30)
 
 static double wall_seconds(void) {
   struct timespec now;
@@ -29,13 +31,13 @@ static double fill(volatile uint64_t *words, size_t count, uint64_t first) {
 }
 
 /* Seconds, below 0 when it failed. */
-static double write_out(const char *path, const char *bytes, size_t count) {
+static double write_out(const char *path, const char *bytes, size_t room, size_t count) {
   const double start = wall_seconds();
   const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   if (file < 0) return -1;
   for (size_t done = 0; done < count;) {
     const size_t next = count - done < WRITE_BYTES ? count - done : WRITE_BYTES;
-    const ssize_t wrote = write(file, bytes + done, next);
+    const ssize_t wrote = write(file, bytes + done % (room - WRITE_BYTES + 1), next);
     if (wrote <= 0) return -1;
     done += (size_t)wrote;
   }
@@ -48,15 +50,17 @@ int main(int count, char **words) {
     fputs("floor BYTES [FILE]\n", stderr);
     return 1;
   }
-  uint64_t *memory = malloc(bytes);
+  const size_t room = bytes < MEMORY_MAX ? bytes + WRITE_BYTES : MEMORY_MAX;
+  uint64_t *memory = malloc(room);
   if (!memory) {
-    fprintf(stderr, "floor: no memory for %zu bytes\n", bytes);
+    fprintf(stderr, "floor: no memory for %zu bytes\n", room);
     return 4;
   }
-  const double fresh = fill(memory, bytes / 8, 1), again = fill(memory, bytes / 8, 2);
+  const double scale = (double)bytes / (double)room;
+  const double fresh = scale * fill(memory, room / 8, 1), again = scale * fill(memory, room / 8, 2);
   double written = 0;
   if (count == 3) {
-    written = write_out(words[2], (const char *)memory, bytes);
+    written = write_out(words[2], (const char *)memory, room, bytes);
     unlink(words[2]);
   }
   free(memory);

@@ -14,6 +14,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -24,10 +25,11 @@
 
 enum {
   BUFFER_BYTES = 1 << 20,
-  PIECE_BYTES = 4 << 20,  /* written between two questions whether to cancel */
-  SLOT_BYTES = 1 << 18,   /* room for one block's text: big enough to make threads worth while, small enough for caches */
-  SLOTS_PER_WORKER = 4,   /* evens out blocks of different cost */
-  TEMPORARY_TRIES = 1000, /* names tried before giving up; each is taken only by a file left over or in the making */
+  PIECE_BYTES = 4 << 20,    /* written between two questions whether to cancel */
+  SLOT_BYTES = 1 << 18,     /* room for one block's text: big enough to make threads worth while, small enough for caches */
+  ROW_SLOT_BYTES = 1 << 20, /* the same for rows, of which each is one call of the system */
+  SLOTS_PER_WORKER = 4,     /* evens out blocks of different cost */
+  TEMPORARY_TRIES = 1000,   /* names tried before giving up; each is taken only by a file left over or in the making */
 };
 
 static const char phase[] = "write";
@@ -264,9 +266,10 @@ typedef struct rows {
   const void *user;
   size_t base, count; /* those being written */
   size_t row_bytes, per_slot;
-  uint64_t first;   /* where the first of them goes in the file */
-  char *slots;      /* one for each worker */
-  atomic_int fault; /* errno of the first write that failed */
+  uint64_t first;          /* where the first of them goes in the file */
+  char *slots;             /* one for each worker */
+  atomic_int fault;        /* errno of the first write that failed */
+  pthread_mutex_t writing; /* the system lets one in at a time, and has the others spin */
 } rows;
 
 /* Writes all of some bytes at a place of the file; returns 0 or errno. */
@@ -284,19 +287,21 @@ static int write_at(int file, const char *bytes, size_t count, uint64_t place) {
 
 static void write_slots(void *user, size_t begin, size_t end, int worker) {
   rows *r = user;
-  char *slot = r->slots + (size_t)worker * SLOT_BYTES;
+  char *slot = r->slots + (size_t)worker * ROW_SLOT_BYTES;
   for (size_t i = begin; i < end && atomic_load(&r->fault) == 0; i++) {
     const size_t first = i * r->per_slot, last = r->count - first < r->per_slot ? r->count : first + r->per_slot;
     const size_t bytes = r->fn(r->user, r->base + first, r->base + last, slot);
     LAVES_ASSERT(bytes == (last - first) * r->row_bytes);
+    pthread_mutex_lock(&r->writing);
     const int fault = write_at(r->out->file, slot, bytes, r->first + (uint64_t)first * r->row_bytes);
+    pthread_mutex_unlock(&r->writing);
     int none = 0;
     if (fault) atomic_compare_exchange_strong(&r->fault, &none, fault);
   }
 }
 
 /* Slots between two reports of progress, which also tell whether to cancel. */
-enum { REPORT_SLOTS = 64 };
+enum { REPORT_SLOTS = 16 };
 
 static void write_rows(rows *r) {
   laves__output *out = r->out;
@@ -323,16 +328,18 @@ void laves__output_rows(laves__output *out, size_t count, size_t row_bytes, lave
   }
   flush(out);
   const int workers = laves__workers(out->context);
-  rows r = {.out = out, .fn = fn, .user = user, .count = count, .row_bytes = row_bytes, .per_slot = SLOT_BYTES / row_bytes};
+  rows r = {.out = out, .fn = fn, .user = user, .count = count, .row_bytes = row_bytes, .per_slot = ROW_SLOT_BYTES / row_bytes};
   r.first = out->written;
   atomic_init(&r.fault, 0);
   if (out->error.result != LAVES_OK || count == 0) return;
-  r.slots = laves__alloc(out->context, (size_t)workers, SLOT_BYTES);
+  pthread_mutex_init(&r.writing, NULL);
+  r.slots = laves__alloc(out->context, (size_t)workers, ROW_SLOT_BYTES);
   if (!r.slots)
     laves__output_fail_memory(out);
   else
     write_rows(&r);
-  laves__free(out->context, r.slots, (size_t)workers, SLOT_BYTES);
+  laves__free(out->context, r.slots, (size_t)workers, ROW_SLOT_BYTES);
+  pthread_mutex_destroy(&r.writing);
   if (out->error.result == LAVES_OK && lseek(out->file, (off_t)out->written, SEEK_SET) < 0)
     fail_system(out, "write", out->target);
 }
