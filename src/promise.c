@@ -88,6 +88,7 @@ typedef enum purpose {
 static laves_result improve(laves__run *r, purpose why) {
   if (!r->options->improve) return LAVES_OK;
   laves__stage_begin(r);
+  const bool rescues = why == RESCUE && r->guarantee;
   const bool held = r->guarantee && laves__count_broken(r->guarantee, &r->layer, NULL) == 0;
   const laves__window aim = {.min_dihedral = r->options->min_dihedral + 1.5,
                              .max_dihedral = fmin(r->options->max_dihedral - 3, 179),
@@ -95,8 +96,8 @@ static laves_result improve(laves__run *r, purpose why) {
                              .held_min = held ? r->guarantee->min_dihedral + held_slack : 0,
                              .held_max = held ? r->guarantee->max_dihedral - held_slack : 180,
                              .again = why == AGAIN,
-                             .rescue_min = why == RESCUE ? r->guarantee->min_dihedral : 0,
-                             .rescue_max = why == RESCUE ? r->guarantee->max_dihedral : 180,
+                             .rescue_min = rescues ? r->guarantee->min_dihedral : 0,
+                             .rescue_max = rescues ? r->guarantee->max_dihedral : 180,
                              .brief = r->rough};
   const laves_result result =
       laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : laves__improve(&r->frame, &aim, &r->layer, r->error);

@@ -10,7 +10,8 @@
  * Threads are POSIX threads that end with the loop. Builds with LAVES_OPENMP take those of OpenMP, which come sooner and then
  * spin between loops: that is processor time for nothing, and on a busy machine wall time, too. */
 #ifdef __linux__
-#define _GNU_SOURCE /* for sched_getaffinity() */
+#define _GNU_SOURCE /* sched_getaffinity(); NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp): the C library's \
+                       name */
 #endif
 #include <stdatomic.h>
 

@@ -49,7 +49,7 @@ void laves__fit_star(const laves__frame *frame, const laves__layer *layer, int32
       if (layer->tet[t][k] == vertex || !laves__layer_is_boundary_face(layer, t, k)) continue;
       int32_t face[3];
       int at = 0;
-      while (layer->tet[t][laves__tet_face[k][at]] != vertex) at++;
+      while (at < 2 && layer->tet[t][laves__tet_face[k][at]] != vertex) at++;
       for (int v = 0; v < 3; v++) face[v] = layer->tet[t][laves__tet_face[k][(at + v) % 3]];
       laves__fit_face(frame, layer, face, fit);
     }

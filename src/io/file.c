@@ -148,7 +148,7 @@ static laves_result read_path(laves_context *context, const char *path, bool may
   *bytes = NULL;
   *length = 0;
   int file;
-  struct stat status;
+  struct stat status = {0};
   laves_result result = open_path(path, &file, &status, error);
   if (result != LAVES_OK) return result;
   if (S_ISREG(status.st_mode))
@@ -172,7 +172,7 @@ laves_result laves__input_read(laves_context *context, const char *path, char **
 /* ---- ranges ---- */
 
 laves_result laves__ranged_file_open(laves__ranged_file *ranged, const char *path, laves_error *error) {
-  struct stat status;
+  struct stat status = {0};
   *ranged = (laves__ranged_file){.path = path, .file = -1};
   laves_result result = open_path(path, &ranged->file, &status, error);
   if (result != LAVES_OK) return result;

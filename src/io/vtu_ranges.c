@@ -225,6 +225,7 @@ static laves_result only_piece(ranges *r, const laves__vtu_piece **only, laves_e
 static laves_result find_arrays(ranges *r, laves_error *error) {
   const laves__vtu_piece *p;
   laves_result result = only_piece(r, &p, error);
+  if (!p) return result;
   if (result == LAVES_OK) result = laves__vtu_check_integers(&r->structure, p, error);
   if (result == LAVES_OK && p->cell_count == 0)
     result = laves__mesh_input_fail(&r->input, error, "there are no tetrahedra in it");

@@ -244,24 +244,38 @@ static size_t put_coordinates(const void *user, size_t begin, size_t end, char *
   const array *a = user;
   char *text = bytes;
   double piece[PIECE];
-  for (size_t i = begin; i < end; i++) {
-    const size_t at = (i - begin) % PIECE;
-    if (at == 0) pack_coordinates(a->grid, i, end - i < PIECE ? end : i + PIECE, piece);
-    text = laves__put_double(text, piece[at]);
-    *text++ = i % 3 == 2 ? '\n' : ' ';
+  for (size_t first = begin, last; first < end; first = last) {
+    last = end - first < PIECE ? end : first + PIECE;
+    pack_coordinates(a->grid, first, last, piece);
+    for (size_t i = first; i < last; i++) {
+      text = laves__put_double(text, piece[i - first]);
+      *text++ = i % 3 == 2 ? '\n' : ' ';
+    }
   }
   return (size_t)(text - bytes);
+}
+
+static char *put_integer(char *text, int64_t value, size_t i) {
+  text = laves__put_integer(text, value);
+  *text++ = i % 12 == 11 ? '\n' : ' ';
+  return text;
 }
 
 static size_t put_integers(const void *user, size_t begin, size_t end, char *bytes) {
   const array *a = user;
   char *text = bytes;
+  for (size_t i = begin; i < end; i++) text = put_integer(text, a->integer(a->grid, i), i);
+  return (size_t)(text - bytes);
+}
+
+static size_t put_corners(const void *user, size_t begin, size_t end, char *bytes) {
+  const array *a = user;
+  char *text = bytes;
   int32_t piece[PIECE];
-  for (size_t i = begin; i < end; i++) {
-    const size_t at = (i - begin) % PIECE;
-    if (at == 0 && !a->integer) pack_corners(a->grid, i, end - i < PIECE ? end : i + PIECE, piece);
-    text = laves__put_integer(text, a->integer ? a->integer(a->grid, i) : piece[at]);
-    *text++ = i % 12 == 11 ? '\n' : ' ';
+  for (size_t first = begin, last; first < end; first = last) {
+    last = end - first < PIECE ? end : first + PIECE;
+    pack_corners(a->grid, first, last, piece);
+    for (size_t i = first; i < last; i++) text = put_integer(text, piece[i - first], i);
   }
   return (size_t)(text - bytes);
 }
@@ -270,7 +284,7 @@ static void write_inline(laves__output *out, const array *a) {
   if (a->kind == FLOAT64)
     laves__output_items(out, a->count, LAVES__DOUBLE_TEXT_MAX + 1, put_coordinates, a);
   else
-    laves__output_items(out, a->count, LAVES__INTEGER_TEXT_MAX + 1, put_integers, a);
+    laves__output_items(out, a->count, LAVES__INTEGER_TEXT_MAX + 1, a->integer ? put_integers : put_corners, a);
 }
 
 /* ---- the file ---- */
