@@ -245,6 +245,7 @@ static laves_result find_connectivity(ranges *r, laves_error *error) {
   const laves__vtu_piece *p;
   int64_t corners = 0;
   laves_result result = only_piece(r, &p, error);
+  if (!p) return result;
   if (result == LAVES_OK) result = read_integers(r, &r->arrays[LAVES__VTU_OFFSETS], p->cell_count - 1, 1, &corners, error);
   if (result != LAVES_OK) return result;
   if (corners < 0 || (uint64_t)corners > SIZE_MAX / 64) return fail_array(r, &r->arrays[LAVES__VTU_OFFSETS], error);
