@@ -86,7 +86,7 @@ static laves_options take_options(fuzz_bytes *b) {
   static const double angles[] = {40, 0, 10, 90};
   laves_options o = laves_options_default();
   const int bits = fuzz_byte(b);
-  o.relative_size = 0.13 + 0.3 * fuzz_share(b);
+  o.relative_size = 0.2 + 0.3 * fuzz_share(b);
   o.method = (laves_method)fuzz_below(b, 3);
   o.guarantee = guarantees[fuzz_below(b, LAVES__COUNT_OF(guarantees))];
   o.feature_angle = angles[fuzz_below(b, LAVES__COUNT_OF(angles))];
