@@ -100,8 +100,44 @@ static void creases_are_kept_in_all_orientations(void **state) {
     for (int number = 0; number < orientations(3); number++) keep_all(&solids[i], number);
 }
 
+/* A crease sharper than the promised window has tets with its angle, which are told apart from a promise that is broken. */
+static void what_a_crease_forces_is_told(void **state) {
+  (void)state;
+  static const double sharp = 26; /* degrees */
+  laves_context *context = laves_context_create(NULL);
+  shape s = make_wedge(sharp);
+  laves_domain *domain;
+  laves_mesh *mesh = NULL;
+  laves_report report;
+  laves_certificate certificate;
+  laves_error error = {0};
+  laves_options options = options_of_size(0.09);
+  options.guarantee = 28;
+  assert_int_equal(
+      laves_domain_from_triangles(context, s.points, s.point_count, s.triangles, s.triangle_count, NULL, &domain, NULL),
+      LAVES_OK);
+  if (laves_generate(context, domain, &options, &mesh, &report, &error) != LAVES_OK) fail_msg("%s", error.text);
+  laves_certify_options about = laves_certify_options_default();
+  about.domain = domain;
+  about.options = &options;
+  about.report = &report;
+  assert_int_equal(laves_certify(context, mesh, &about, &certificate, NULL), LAVES_OK);
+  const size_t outside = certificate.exception_counts[LAVES_EXCEPTION_OUTSIDE_PROMISED];
+  print_message("wedge of %g degrees: %zu tets forced, smallest angle %.3f, %zu outside\n", sharp, report.forced_tets,
+                certificate.check.min_dihedral.min, outside);
+  assert_true(certificate.check.valid);
+  assert_true(report.forced_tets > 0);
+  assert_int_equal(report.forced_tets, outside);
+  assert_true(fabs(certificate.check.min_dihedral.min - sharp) < 1e-3);
+  laves_mesh_free(mesh);
+  laves_domain_free(domain);
+  shape_free(&s);
+  laves_context_free(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(what_a_crease_forces_is_told),
       cmocka_unit_test(creases_are_kept_in_all_orientations),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
