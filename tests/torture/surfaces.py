@@ -382,7 +382,7 @@ WAYS = {
     "inner-walls": (inner_walls, "either", 0),
     "stray-faces": (stray_faces, "either", 3),
     "fins": (fins, "mesh", 5),
-    "merged-points": (merged_points, "mesh", 1),
+    "merged-points": (merged_points, "either", 1),
     "far-and-scaled": (far_and_scaled, "mesh", 10),
     "rounded": (rounded, "either", 5),
     "many-parts": (many_parts, "either", 0),
