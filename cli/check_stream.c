@@ -46,12 +46,7 @@ static void say_distance(const laves_check *check) {
 
 static void say_check(const session *run, const stream_run *all) {
   const laves_check *check = &all->found.check;
-  text_buffer tets, vertices, unused;
-  text_say("%s: %s, %s, %s", text_base_name(run->given->input), text_plural(&tets, check->tets, "tet"),
-           text_plural(&vertices, check->vertices, "vertex"), check->valid ? "valid" : "NOT VALID");
-  summary_faults(check);
-  if (check->unused_vertices) text_say("  %s in no tet (harmless)", text_plural(&unused, check->unused_vertices, "vertex"));
-  summary_check(check);
+  summary_verdict(run->given->input, check);
   say_triangles(&all->found);
   say_distance(check);
   place_list_say_window(&all->outside, &all->window);

@@ -150,6 +150,15 @@ static void distance_json(json *out, const laves_check *check) {
   json_close(out);
 }
 
+void summary_verdict(const char *path, const laves_check *check) {
+  text_buffer tets, vertices, unused;
+  text_say("%s: %s, %s, %s", text_base_name(path), text_plural(&tets, check->tets, "tet"),
+           text_plural(&vertices, check->vertices, "vertex"), check->valid ? "valid" : "NOT VALID");
+  summary_faults(check);
+  if (check->unused_vertices) text_say("  %s in no tet (harmless)", text_plural(&unused, check->unused_vertices, "vertex"));
+  summary_check(check);
+}
+
 void summary_check_json(json *out, const laves_check *check) {
   json_integer(out, "tets", (int64_t)check->tets);
   json_integer(out, "vertices", (int64_t)check->vertices);

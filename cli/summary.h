@@ -12,6 +12,9 @@ void summary_input(const input *in, bool all);
 /* Topology and quality of a mesh, then the histogram. */
 void summary_check(const laves_check *check);
 
+/* All of a checked mesh: its file's name, counts, whether it is valid and why not, then the above. */
+void summary_verdict(const char *path, const laves_check *check);
+
 /* Why a mesh is not valid; nothing for a valid one. */
 void summary_faults(const laves_check *check);
 

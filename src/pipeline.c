@@ -29,6 +29,14 @@ static laves_result choose_frame(laves__run *r) {
 
 static bool has_target(const laves_options *o) { return o->tet_target > 0 || o->vertex_target > 0; }
 
+/* Regions are found tetrahedron by tetrahedron, which a streamed mesh does not hold. */
+static laves_result check_streaming(const laves__run *r) {
+  const bool regions = r->domain->oracle.region || r->options->regions != LAVES_REGIONS_NONE;
+  if (!r->options->streamed || !regions) return LAVES_OK;
+  return laves__fail(r->error, LAVES_ERROR_OPTION,
+                     "regions need a mesh in memory, but it was asked to be streamed; leave one of the two away");
+}
+
 /* What is wished where. A field that turns out to be the same everywhere is none. */
 static laves_result choose_sizes(laves__run *r) {
   const double base = r->frame.size;
@@ -67,9 +75,6 @@ static laves_result name_groups(const laves__run *r, laves_mesh *mesh) {
 static laves_result find_regions(laves__run *r, laves_mesh *mesh) {
   const bool named = r->domain->oracle.region != NULL;
   if (!named && r->options->regions == LAVES_REGIONS_NONE) return LAVES_OK;
-  if (r->options->streamed)
-    return laves__fail(r->error, LAVES_ERROR_OPTION,
-                       "regions need a mesh in memory, but it was asked to be streamed; leave one of the two away");
   laves__stage_begin(r);
   const laves_result result =
       (named ? laves__regions_of_names : laves__regions_of_parts)(r->context, r->domain, mesh, &r->regions, r->error);
@@ -141,6 +146,7 @@ laves_result laves_generate(laves_context *context, const laves_domain *domain, 
   laves__progress_reset(context);
 
   laves_result result = laves__options_check(options, error);
+  if (result == LAVES_OK) result = check_streaming(&r);
   if (result == LAVES_OK) result = choose_frame(&r);
   if (result == LAVES_OK) r.guarantee = laves__options_guarantee(options);
   if (result == LAVES_OK) result = choose_sizes(&r);
