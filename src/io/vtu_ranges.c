@@ -289,6 +289,15 @@ static laves_result read_head(ranges *r, size_t bytes, laves_error *error) {
   return laves__ranged_file_read(&r->file, 0, r->head, bytes, error);
 }
 
+/* Whether the head is XML, and no other format that has some within. */
+static bool begins_as_xml(const ranges *r) {
+  static const char mark[] = "\xEF\xBB\xBF"; /* of the byte order, which some programs write */
+  const char *at = r->head, *end = r->head + r->head_bytes;
+  if (end - at >= 3 && memcmp(at, mark, 3) == 0) at += 3;
+  while (at < end && (*at == ' ' || *at == '\t' || *at == '\r' || *at == '\n')) at++;
+  return at < end && *at == '<';
+}
+
 /* Walks longer and longer heads of the file until one ends behind the XML. What a short one says wrongly, because it cuts a tag
  * in two, a longer one corrects. */
 static laves_result read_structure(ranges *r, laves_error *error) {
@@ -296,6 +305,9 @@ static laves_result read_structure(ranges *r, laves_error *error) {
     const bool whole = bytes >= r->file.bytes;
     laves_result result = read_head(r, (size_t)(whole ? r->file.bytes : bytes), error);
     if (result != LAVES_OK) return result;
+    if (!begins_as_xml(r))
+      return laves__mesh_input_fail(&r->input, error,
+                                    "it does not begin as XML does, so it is no VTU file; check it without --stream");
     result = laves__vtu_read_structure(&r->structure, error);
     if (result == LAVES_ERROR_MEMORY || (result == LAVES_OK && r->structure.appended)) return result;
     if (!whole && bytes < HEAD_BYTES_MAX) continue;
