@@ -29,13 +29,15 @@ static void compare(laves_context *context, const char *path, const laves_check 
     return;
   }
   FUZZ_REQUIRE(laves_check_mesh(context, mesh, NULL, &whole, NULL) == LAVES_OK);
-  FUZZ_REQUIRE(found->valid == whole.valid && found->tets == whole.tets && found->vertices == whole.vertices);
+  FUZZ_REQUIRE(found->valid == whole.valid && found->tets == whole.tets);
+  /* A whole file is read without the points that only cells of other kinds use; here they stay, and count as unused. */
+  FUZZ_REQUIRE(found->vertices - found->unused_vertices == whole.vertices - whole.unused_vertices);
   FUZZ_REQUIRE(found->bad_indices == whole.bad_indices && found->inverted_tets == whole.inverted_tets);
   FUZZ_REQUIRE(found->nonconforming_faces == whole.nonconforming_faces && found->faces == whole.faces);
   FUZZ_REQUIRE(found->nonmanifold_edges == whole.nonmanifold_edges);
   FUZZ_REQUIRE(found->nonmanifold_vertices == whole.nonmanifold_vertices);
   FUZZ_REQUIRE(found->components == whole.components && found->boundary_components == whole.boundary_components);
-  FUZZ_REQUIRE(found->genus == whole.genus && found->unused_vertices == whole.unused_vertices);
+  FUZZ_REQUIRE(found->genus == whole.genus);
   FUZZ_REQUIRE(same(found->volume, whole.volume) || (found->volume != found->volume && whole.volume != whole.volume));
   FUZZ_REQUIRE(same(found->min_dihedral.min, whole.min_dihedral.min) && same(found->edge_max, whole.edge_max));
   laves_mesh_free(mesh);
