@@ -141,7 +141,7 @@ static void hints_never_change_answers(void **unused) {
   enum { COUNT = 500 };
   laves__vec3 points[COUNT];
   double together[COUNT];
-  uint32_t hints[COUNT];
+  uint32_t hints[COUNT] = {LAVES__NO_HINT}; /* the first is where to begin */
   uint64_t state = 3;
   for (int i = 0; i < COUNT; i++) points[i] = random_point(&state, o->bounds, 0.2);
   /* Points on the grid of the surface itself, where many triangles are equally near. */
