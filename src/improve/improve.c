@@ -13,6 +13,7 @@
 
 #include "improve/contract.h"
 #include "improve/flip.h"
+#include "improve/patients.h"
 #include "improve/peel.h"
 #include "improve/relax.h"
 #include "improve/smooth.h"
@@ -40,12 +41,10 @@ static const double rough_admit = 0.4;  /* quality: about 26 degrees */
 static const double rescue_slack = 1.2; /* times the quality of the angles that are rescued from */
 /* Where that is known beforehand, smoothing leaves those alone, too, that are better than this. */
 static const double brief_admit = 0.6;      /* about 32 degrees */
-static const double block_side = 15;        /* local sizes; see above */
 static const double worthwhile = 0.02;      /* see the member of `work` */
 static const double worthwhile_again = 0.1; /* the same for what is left once features were let go of, where that is a crowd */
 static const double thorough_below = 0.985; /* quality below which the few that remain get more patience */
 static const double far_outside = 0.75;     /* quality: about 36 to 131 degrees for the standard window */
-static const double wall_admit = 0.8;       /* quality: about 37 to 128 degrees; enough for tets that span a wall */
 static const size_t wall_count = 200;       /* bad ones; fewer get all the patience there is */
 static const double graded_crowd = 0.1;     /* what `crowd` is on a graded background, after flips */
 static const double peel_below = 0.5;       /* quality below which a tet between two surfaces is taken away, if it can be */
@@ -66,36 +65,25 @@ static const size_t spare_share = 8, spare_min = 1024;
 /* Where features are kept, splits need some dead vertices. */
 static const size_t spare_vertex_share = 64, spare_vertex_min = 256;
 
-/* A bad tet and the block of space in which it is worked on; blocks of a level are 2^level times as large. */
-typedef struct patient {
-  int32_t level, colour, block[3];
-  int32_t tet;
-  double quality;
-} patient;
-
 typedef struct work {
   const laves__frame *frame;
   laves__measure measure;
   double target;
   laves__layer *layer;
   laves__journal *journal; /* one for each worker */
-  patient *item;           /* by level, then colour, then block, then quality */
-  size_t count, capacity;
-  size_t *block; /* first item of each block, and the end */
-  size_t block_count, block_capacity;
+  laves__patients patients;
   double progress; /* share of the first bad tets that are cured, for the caller's eyes */
   size_t first_count;
   int32_t *spare; /* [spare_count] dead tets that flips may use, shared out among the blocks; NULL: no flips */
   size_t spare_count;
   int32_t *spare_vertex; /* [spare_vertex_count] dead vertices that splits may use, shared out likewise; NULL: no splits */
   size_t spare_vertex_count, first_spare_vertex;
-  uint8_t *tries;    /* [tet_count] full treatments so far, at most TRIES_MAX */
-  double *stuck;     /* [tet_count] surroundings in which smoothing ended */
-  double *given_up;  /* [tet_count] surroundings in which the last full treatment failed */
-  double admit;      /* tets below this quality are worked on */
-  double worthwhile; /* share of them that a pass must cure to be followed by its like */
-  bool thin;         /* tets that span a wall are good enough at wall_admit */
-  int rounds;        /* of smoothing around a contraction; 0: smoothing only */
+  uint8_t *tries;             /* [tet_count] full treatments so far, at most TRIES_MAX */
+  double *stuck;              /* [tet_count] surroundings in which smoothing ended */
+  double *given_up;           /* [tet_count] surroundings in which the last full treatment failed */
+  laves__admission admission; /* which tets are worked on */
+  double worthwhile;          /* share of them that a pass must cure to be followed by its like */
+  int rounds;                 /* of smoothing around a contraction; 0: smoothing only */
 } work;
 
 static void measure_all(void *user, size_t begin, size_t end, int worker) {
@@ -104,80 +92,15 @@ static void measure_all(void *user, size_t begin, size_t end, int worker) {
   laves__measure_tets(&w->measure, w->layer, begin, end, w->layer->quality + begin);
 }
 
-/* Whether a tet is the whole of a wall: all its corners are on the surface, none of them at a crease. */
-static bool spans_wall(const laves__layer *layer, int32_t t) {
-  for (int k = 0; k < 4; k++) {
-    const int32_t v = layer->tet[t][k];
-    if (layer->depth[v] != 0 || laves__layer_hold(layer, v).kind >= LAVES__HOLD_CREASE) return false;
-  }
-  return true;
-}
+static bool is_bad(const work *w, int32_t t) { return laves__is_bad(w->layer, &w->admission, t); }
 
-static bool is_bad(const work *w, int32_t t) {
-  if (w->layer->tet[t][0] < 0 || !(w->layer->quality[t] < w->admit)) return false;
-  return !w->thin || w->layer->quality[t] < wall_admit || !spans_wall(w->layer, t);
-}
+static size_t count_bad(const work *w) { return laves__count_bad(w->layer, &w->admission); }
 
 /* Whether walls a tet thick are more than a place or two: contraction is dear, and there it seldom reaches the asked window. */
 static bool has_thin_walls(const work *w) {
   size_t count = 0;
-  for (size_t t = 0; t < w->layer->tet_count; t++) count += is_bad(w, (int32_t)t) && spans_wall(w->layer, (int32_t)t);
+  for (size_t t = 0; t < w->layer->tet_count; t++) count += is_bad(w, (int32_t)t) && laves__spans_wall(w->layer, (int32_t)t);
   return count > wall_count;
-}
-
-/* The least power of two that no size at the corners of a tet exceeds. */
-static int level_of(const laves__layer *layer, int32_t tet) {
-  double largest = laves__layer_scale(layer, layer->tet[tet][0]);
-  for (int k = 1; k < 4; k++) largest = fmax(largest, laves__layer_scale(layer, layer->tet[tet][k]));
-  int level;
-  return frexp(largest, &level) == 0.5 ? level - 1 : level;
-}
-
-static patient admit(const laves__layer *layer, int32_t tet) {
-  laves__vec3 p[4];
-  laves__layer_points(layer, tet, p);
-  const int level = level_of(layer, tet);
-  const laves__vec3 c = v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25 / ldexp(block_side, level));
-  patient item = {.level = level,
-                  .block = {(int32_t)floor(c.x), (int32_t)floor(c.y), (int32_t)floor(c.z)},
-                  .tet = tet,
-                  .quality = layer->quality[tet]};
-  item.colour = (item.block[0] & 1) + 2 * (item.block[1] & 1) + 4 * (item.block[2] & 1);
-  return item;
-}
-
-static bool same_block(const patient *a, const patient *b) {
-  return a->level == b->level && a->block[0] == b->block[0] && a->block[1] == b->block[1] && a->block[2] == b->block[2];
-}
-
-static bool same_colour(const patient *a, const patient *b) { return a->level == b->level && a->colour == b->colour; }
-
-static int by_level_colour_block_quality(const void *left, const void *right) {
-  const patient *a = left, *b = right;
-  if (a->level != b->level) return a->level > b->level ? -1 : 1;
-  if (a->colour != b->colour) return a->colour < b->colour ? -1 : 1;
-  for (int axis = 2; axis >= 0; axis--)
-    if (a->block[axis] != b->block[axis]) return a->block[axis] < b->block[axis] ? -1 : 1;
-  if (a->quality != b->quality) return a->quality < b->quality ? -1 : 1;
-  return a->tet < b->tet ? -1 : a->tet > b->tet;
-}
-
-/* The bad tets of the layer, in order, and where their blocks begin; false when memory is short. */
-static bool admit_all(work *w) {
-  w->count = w->block_count = 0;
-  for (size_t t = 0; t < w->layer->tet_count; t++) {
-    if (!is_bad(w, (int32_t)t)) continue;
-    if (!laves__grow(w->layer->context, &w->item, &w->capacity, w->count + 1, sizeof *w->item)) return false;
-    w->item[w->count++] = admit(w->layer, (int32_t)t);
-  }
-  if (w->count) qsort(w->item, w->count, sizeof *w->item, by_level_colour_block_quality);
-  for (size_t i = 0; i <= w->count; i++) {
-    if (i > 0 && i < w->count && same_block(&w->item[i - 1], &w->item[i])) continue;
-    if (!laves__grow(w->layer->context, &w->block, &w->block_capacity, w->block_count + 1, sizeof *w->block)) return false;
-    w->block[w->block_count++] = i;
-  }
-  w->block_count--;
-  return true;
 }
 
 /* A number that changes when any tet around a tet does. */
@@ -236,13 +159,15 @@ static void mend(work *w, int32_t t, laves__slots *slots, laves__spare *vertices
 
 /* Dead tets are shared out by the bad tets of each block. */
 static laves__slots slots_of(const work *w, size_t block) {
-  const size_t first = w->spare_count * w->block[block] / w->count, end = w->spare_count * w->block[block + 1] / w->count;
+  const laves__patients *p = &w->patients;
+  const size_t first = w->spare_count * p->block[block] / p->count, end = w->spare_count * p->block[block + 1] / p->count;
   return (laves__slots){.tet = w->spare ? w->spare + first : NULL, .count = (int32_t)(end - first)};
 }
 
 static laves__spare vertices_of(const work *w, size_t block) {
+  const laves__patients *p = &w->patients;
   const size_t all = w->spare_vertex_count;
-  const size_t first = all * w->block[block] / w->count, end = all * w->block[block + 1] / w->count;
+  const size_t first = all * p->block[block] / p->count, end = all * p->block[block + 1] / p->count;
   return (laves__spare){.vertex = w->spare_vertex ? w->spare_vertex + first : NULL, .count = (int32_t)(end - first)};
 }
 
@@ -268,24 +193,27 @@ static void mend_blocks(void *user, size_t begin, size_t end, int worker) {
   for (size_t b = range->first_block + begin; b < range->first_block + end; b++) {
     laves__slots slots = slots_of(w, b);
     laves__spare vertices = vertices_of(w, b);
-    for (size_t i = w->block[b]; i < w->block[b + 1]; i++) {
+    for (size_t i = w->patients.block[b]; i < w->patients.block[b + 1]; i++) {
       if (laves__is_cancelled(w->layer->context)) return;
       if (worker == 0 && laves__cancelled(w->layer->context, "improve", w->progress)) return;
-      if (is_bad(w, w->item[i].tet)) mend(w, w->item[i].tet, &slots, &vertices, &w->journal[worker]);
+      const int32_t t = w->patients.item[i].tet;
+      if (is_bad(w, t)) mend(w, t, &slots, &vertices, &w->journal[worker]);
     }
   }
 }
 
 /* One pass over the bad tets; how many there were goes to *before. */
 static laves_result run_pass(work *w, size_t *before, laves_error *error) {
-  if (!admit_all(w)) return laves__fail_memory(w->layer->context, error);
+  const laves__patients *p = &w->patients;
+  if (!laves__patients_list(w->layer, &w->admission, &w->patients)) return laves__fail_memory(w->layer->context, error);
+  if (laves__is_cancelled(w->layer->context)) return laves__fail_cancelled(error);
   collect_spare(w);
-  *before = w->count;
-  if (w->first_count == 0) w->first_count = w->count;
-  if (w->count) w->progress = fmax(w->progress, 1 - (double)w->count / (double)w->first_count);
-  for (size_t first = 0; first < w->block_count;) {
+  *before = p->count;
+  if (w->first_count == 0) w->first_count = p->count;
+  if (p->count) w->progress = fmax(w->progress, 1 - (double)p->count / (double)w->first_count);
+  for (size_t first = 0; first < p->block_count;) {
     size_t end = first + 1;
-    while (end < w->block_count && same_colour(&w->item[w->block[end]], &w->item[w->block[first]])) end++;
+    while (end < p->block_count && laves__same_colour(&p->item[p->block[end]], &p->item[p->block[first]])) end++;
     colour_range range = {w, first};
     if (!laves__parallel_for(w->layer->context, NULL, end - first, 0, mend_blocks, &range)) return laves__fail_cancelled(error);
     first = end;
@@ -332,18 +260,15 @@ static void peel_all(work *w) {
 
 /* Whether the bad tets are more than `least`, and more than a share of the layer. */
 static bool is_crowded(const work *w, double share, size_t least) {
-  size_t bad = 0;
-  for (size_t t = 0; t < w->layer->tet_count; t++) bad += is_bad(w, (int32_t)t);
+  const size_t bad = count_bad(w);
   return bad > least && (double)bad > share * (double)w->layer->tet_count;
 }
 
 /* Whether the bad ones are a large share of the tets that live. */
 static bool is_rough(const work *w) {
-  size_t bad = 0, alive = 0;
-  for (size_t t = 0; t < w->layer->tet_count; t++) {
-    bad += is_bad(w, (int32_t)t);
-    alive += w->layer->tet[t][0] >= 0;
-  }
+  size_t alive = 0;
+  for (size_t t = 0; t < w->layer->tet_count; t++) alive += w->layer->tet[t][0] >= 0;
+  const size_t bad = count_bad(w);
   return bad > crowd_min && (double)bad > rough_share * (double)alive;
 }
 
@@ -357,19 +282,19 @@ static void forget(work *w) {
 
 /* The lattice's connectivity is good: smoothing does nearly all, contraction the rest. */
 static laves_result mend_tiling(work *w, bool brief, laves_error *error) {
-  if (brief) w->admit = brief_admit;
+  if (brief) w->admission.below = brief_admit;
   laves_result result = run_passes(w, 1, 1, error);
   const bool rough = brief || is_crowded(w, rough_share, crowd_min);
   if (result == LAVES_OK) result = run_passes(w, rough ? 1 : SMOOTH_PASSES - 1, 1, error);
   if (result == LAVES_OK) settle_all(w, settle_floor);
   const bool crowded = is_crowded(w, crowd, crowd_min);
-  w->thin = has_thin_walls(w);
+  w->admission.thin = has_thin_walls(w);
   w->rounds = 1;
-  if (rough) w->admit = rough_admit;
+  if (rough) w->admission.below = rough_admit;
   if (result == LAVES_OK) result = run_passes(w, rough ? 1 : crowded ? CROWD_PASSES : CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) peel_all(w);
   w->rounds = THOROUGH_ROUNDS;
-  w->admit = w->layer->hold && is_crowded(w, crowd, crease_crowd_min) ? far_outside : thorough_below;
+  w->admission.below = w->layer->hold && is_crowded(w, crowd, crease_crowd_min) ? far_outside : thorough_below;
   forget(w);
   const int patience = is_crowded(w, 0, crowd_min) ? 1 : 2;
   if (result == LAVES_OK && !crowded && !rough) result = run_passes(w, CONTRACT_PASSES, patience, error);
@@ -384,15 +309,15 @@ static laves_result mend_graded(work *w, laves_error *error) {
   if (result == LAVES_OK) settle_all(w, settle_floor);
   const bool crowded = is_crowded(w, graded_crowd, crowd_min);
   w->rounds = 1;
-  w->admit = far_outside;
+  w->admission.below = far_outside;
   const bool rough = is_crowded(w, graded_crowd, crowd_min);
-  w->thin = has_thin_walls(w);
+  w->admission.thin = has_thin_walls(w);
   if (result == LAVES_OK) result = run_passes(w, rough ? 1 : CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) peel_all(w);
-  w->admit = 1;
+  w->admission.below = 1;
   if (result == LAVES_OK && !crowded) result = run_passes(w, CROWD_PASSES, 2, error);
   w->rounds = THOROUGH_ROUNDS;
-  w->admit = crowded ? far_outside : thorough_below;
+  w->admission.below = crowded ? far_outside : thorough_below;
   forget(w);
   if (result == LAVES_OK && !rough) result = run_passes(w, CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) peel_all(w);
@@ -417,10 +342,10 @@ static laves_result bring_home(work *w, laves_error *error) {
   for (int round = 0; result == LAVES_OK && round < ROUNDS && count_off(w) > 0; round++) {
     settle_all(w, home_floor);
     w->rounds = round >= SMOOTH_ROUNDS;
-    if (w->rounds > 0 && is_rough(w)) w->admit = far_outside;
+    if (w->rounds > 0 && is_rough(w)) w->admission.below = far_outside;
     result = run_passes(w, 1, 1, error);
   }
-  w->admit = 1;
+  w->admission.below = 1;
   w->rounds = 0;
   return result;
 }
@@ -428,7 +353,7 @@ static laves_result bring_home(work *w, laves_error *error) {
 /* After features were let go of: only what is far outside, and what was freed, which is off the surface. */
 static laves_result mend_again(work *w, laves_error *error) {
   settle_all(w, settle_floor);
-  w->admit = far_outside;
+  w->admission.below = far_outside;
   laves_result result = run_passes(w, SMOOTH_PASSES, 1, error);
   w->rounds = THOROUGH_ROUNDS;
   if (is_crowded(w, 0, crease_crowd_min)) w->worthwhile = worthwhile_again;
@@ -441,9 +366,9 @@ static laves_result mend_again(work *w, laves_error *error) {
 static laves_result rescue(work *w, const laves__window *window, laves_error *error) {
   static const double radians = 3.14159265358979323846 / 180;
   settle_all(w, settle_floor);
-  w->admit = rescue_slack * fmax(w->measure.low_scale * (1 - cos(window->rescue_min * radians)),
-                                 w->measure.high_scale * (1 + cos(window->rescue_max * radians)));
-  w->admit = fmin(w->admit, 1);
+  w->admission.below = rescue_slack * fmax(w->measure.low_scale * (1 - cos(window->rescue_min * radians)),
+                                           w->measure.high_scale * (1 + cos(window->rescue_max * radians)));
+  w->admission.below = fmin(w->admission.below, 1);
   laves_result result = run_passes(w, SMOOTH_PASSES, 1, error);
   w->rounds = THOROUGH_ROUNDS;
   if (result == LAVES_OK) result = run_passes(w, CONTRACT_PASSES, 2, error);
@@ -469,8 +394,12 @@ static bool short_of_memory(const work *w, int workers) {
 
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {
   laves_context *context = layer->context;
-  work w = {
-      .frame = frame, .measure = laves__measure_of(window), .target = 1, .admit = 1, .worthwhile = worthwhile, .layer = layer};
+  work w = {.frame = frame,
+            .measure = laves__measure_of(window),
+            .target = 1,
+            .admission.below = 1,
+            .worthwhile = worthwhile,
+            .layer = layer};
   leave_out_sharp(&w, window);
   const int workers = laves__workers(context);
   laves_result result = LAVES_OK;
@@ -505,8 +434,7 @@ cleanup:
   laves__free(context, w.stuck, layer->tet_count, sizeof *w.stuck);
   laves__free(context, w.given_up, layer->tet_count, sizeof *w.given_up);
   laves__free(context, w.journal, (size_t)workers, sizeof *w.journal);
-  laves__free(context, w.item, w.capacity, sizeof *w.item);
-  laves__free(context, w.block, w.block_capacity, sizeof *w.block);
+  laves__patients_free(context, &w.patients);
   return result;
 }
 

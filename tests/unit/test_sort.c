@@ -55,10 +55,46 @@ static void keys_order_by_value_then_index(void **state) {
   }
 }
 
+/* An item is more than its key, so that what moves is seen. */
+typedef struct pair {
+  uint64_t key, echo[4];
+} pair;
+
+static void all_threads_sort_like_qsort(void **state) {
+  (void)state;
+  static const size_t counts[] = {0, 1, 2, 2047, 2048, 2049, 5000, 30011};
+  for (int threads = 1; threads <= 7; threads += 2) {
+    laves_context_options options = laves_context_options_default();
+    options.thread_count = threads;
+    laves_context *context = laves_context_create(&options);
+    for (size_t i = 0; i < LAVES__COUNT_OF(counts); i++) {
+      const size_t count = counts[i];
+      pair *items = malloc((count + 1) * sizeof *items), *scratch = malloc((count + 1) * sizeof *scratch);
+      uint64_t *expected = malloc((count + 1) * sizeof *expected), seed = i;
+      assert_true(context && items && scratch && expected);
+      for (size_t k = 0; k < count; k++) {
+        expected[k] = (uint64_t)(random_unit(&seed) * (i % 2 ? 1e3 : 1e15)); /* many alike, and none */
+        items[k] = (pair){expected[k], {expected[k], expected[k], expected[k], expected[k]}};
+      }
+      qsort(expected, count, sizeof *expected, compare);
+      assert_true(laves__sort(context, items, scratch, count, sizeof *items, compare));
+      for (size_t k = 0; k < count; k++) {
+        assert_int_equal(items[k].key, expected[k]);
+        assert_int_equal(items[k].echo[3], expected[k]);
+      }
+      free(items);
+      free(scratch);
+      free(expected);
+    }
+    laves_context_free(context);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sorts_all_widths),
       cmocka_unit_test(sorts_by_the_highest_and_lowest_digit),
+      cmocka_unit_test(all_threads_sort_like_qsort),
       cmocka_unit_test(keys_order_by_value_then_index),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
