@@ -113,6 +113,14 @@ static char *put_decimal(char *text, decimal d) {
   return laves__put_integer(end, point - 1);
 }
 
+/* The shortest decimal of a double above zero. */
+static decimal shortest_of(uint64_t fraction, int exponent) {
+  const uint64_t c = exponent ? fraction | UINT64_C(1) << 52 : fraction;
+  const int q = exponent ? exponent - 1075 : -1074;
+  const bool small_integer = q <= 0 && q > -53 && (c & ((UINT64_C(1) << -q) - 1)) == 0;
+  return small_integer ? (decimal){c >> -q, 0} : shortest(c, q, fraction == 0 && exponent > 1);
+}
+
 char *laves__put_double(char *text, double value) {
   uint64_t bits;
   memcpy(&bits, &value, sizeof bits);
@@ -126,8 +134,47 @@ char *laves__put_double(char *text, double value) {
     *text++ = '0';
     return text;
   }
-  const uint64_t c = exponent ? fraction | UINT64_C(1) << 52 : fraction;
-  const int q = exponent ? exponent - 1075 : -1074;
-  const bool small_integer = q <= 0 && q > -53 && (c & ((UINT64_C(1) << -q) - 1)) == 0;
-  return put_decimal(text, small_integer ? (decimal){c >> -q, 0} : shortest(c, q, fraction == 0 && exponent > 1));
+  return put_decimal(text, shortest_of(fraction, exponent));
+}
+
+/* ---- fields ---- */
+
+/* d with its last `count` digits rounded away. */
+static decimal rounded(decimal d, int count) {
+  uint64_t unit = 1;
+  for (int i = 0; i < count; i++) unit *= 10;
+  return (decimal){(d.digits + unit / 2) / unit, d.exponent + count};
+}
+
+static char *put_field(char *text, decimal d) {
+  char plain[LAVES__DOUBLE_TEXT_MAX + 1];
+  const char *end = put_decimal(plain, d), *c = plain;
+  bool point = false;
+  if (plain[0] == '0' && plain[1] == '.') c++; /* ".5" is one character less */
+  for (; c < end; c++) {
+    point |= *c == '.';
+    if (*c == 'e' && !point) *text++ = '.';
+    point |= *c == 'e';
+    *text++ = *c == 'e' ? 'E' : *c;
+  }
+  if (!point) *text++ = '.';
+  return text;
+}
+
+char *laves__put_double_field(char *text, double value, int width) {
+  uint64_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  const uint64_t fraction = bits & ((UINT64_C(1) << 52) - 1);
+  const int exponent = (int)(bits >> 52 & 0x7ff);
+  const bool zero = exponent == 0 && fraction == 0, negative = bits >> 63 && !zero;
+  if (zero || exponent == 0x7ff) return (char *)memcpy(text, "0.", 2) + 2;
+  if (negative) *text++ = '-';
+  const decimal d = shortest_of(fraction, exponent);
+  for (int dropped = 0;; dropped++) {
+    char field[LAVES__DOUBLE_TEXT_MAX + 2];
+    const size_t length = (size_t)(put_field(field, rounded(d, dropped)) - field);
+    if (length + negative > (size_t)width) continue;
+    memcpy(text, field, length);
+    return text + length;
+  }
 }
