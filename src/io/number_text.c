@@ -146,19 +146,25 @@ static decimal rounded(decimal d, int count) {
   return (decimal){(d.digits + unit / 2) / unit, d.exponent + count};
 }
 
+/* Plain where the point is within or next to the digits, else with an exponent. */
 static char *put_field(char *text, decimal d) {
-  char plain[LAVES__DOUBLE_TEXT_MAX + 1];
-  const char *end = put_decimal(plain, d), *c = plain;
-  bool point = false;
-  if (plain[0] == '0' && plain[1] == '.') c++; /* ".5" is one character less */
-  for (; c < end; c++) {
-    point |= *c == '.';
-    if (*c == 'e' && !point) *text++ = '.';
-    point |= *c == 'e';
-    *text++ = *c == 'e' ? 'E' : *c;
+  enum { PLAIN_MAX = 12 };
+  while (d.digits % 10 == 0) {
+    d.digits /= 10;
+    d.exponent++;
   }
-  if (!point) *text++ = '.';
-  return text;
+  char digits[20];
+  const int count = digit_count(d.digits), point = count + d.exponent; /* value = 0.digits * 10^point */
+  put_digits(digits, d.digits, count);
+  const bool plain = point >= -2 && point <= PLAIN_MAX;
+  const int before = plain ? (point > 0 ? point : 0) : 1; /* digits, or zeros behind them, before the point */
+  for (int i = 0; i < before; i++) *text++ = i < count ? digits[i] : '0';
+  *text++ = '.';
+  for (int i = point; plain && i < 0; i++) *text++ = '0';
+  for (int i = before; i < count; i++) *text++ = digits[i];
+  if (plain) return text;
+  *text++ = 'E';
+  return laves__put_integer(text, point - 1);
 }
 
 char *laves__put_double_field(char *text, double value, int width) {

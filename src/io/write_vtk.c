@@ -183,7 +183,7 @@ static void write_names(laves__output *out, const laves_mesh *mesh, bool ascii) 
 static void write_data(laves__output *out, const laves_mesh *mesh, bool ascii) {
   const size_t cells = laves__cell_count(mesh);
   const char *end = ascii ? "" : "\n"; /* binary data ends without one */
-  laves__output_printf(out, "%sCELL_DATA %zu\nFIELD FieldData %d\nregion 1 %zu int\n", end, cells, mesh->face_sources ? 3 : 2, cells);
+  laves__output_printf(out, "CELL_DATA %zu\nFIELD FieldData %d\nregion 1 %zu int\n", cells, mesh->face_sources ? 3 : 2, cells);
   write_items(out, &regions, cells, mesh, ascii);
   laves__output_printf(out, "%sclass 1 %zu unsigned_char\n", end, cells);
   write_items(out, &classes, cells, mesh, ascii);
@@ -199,7 +199,6 @@ void laves__write_vtk(laves__output *out, const laves_mesh *mesh, bool ascii) {
   const char *end = ascii ? "" : "\n";
   out->expected = (ascii ? 56.0 : 24.0) * (double)mesh->vertex_count + (ascii ? 38.0 : 29.0) * (double)cells;
   laves__output_printf(out, "# vtk DataFile Version 3.0\ntetrahedral mesh\n%s\nDATASET UNSTRUCTURED_GRID\n", ascii ? "ASCII" : "BINARY");
-  write_names(out, mesh, ascii);
   laves__output_printf(out, "POINTS %zu double\n", mesh->vertex_count);
   write_items(out, &points, mesh->vertex_count, mesh, ascii);
   laves__output_printf(out, "%sCELLS %zu %zu\n", end, cells, cells + laves__cell_corners(mesh));
@@ -207,5 +206,7 @@ void laves__write_vtk(laves__output *out, const laves_mesh *mesh, bool ascii) {
   write_items(out, &faces, triangles, mesh, ascii);
   laves__output_printf(out, "%sCELL_TYPES %zu\n", end, cells);
   write_items(out, &types, cells, mesh, ascii);
+  laves__output_printf(out, "%s", end);
+  write_names(out, mesh, ascii); /* here, since Gmsh wants the points first and VTK takes them anywhere */
   write_data(out, mesh, ascii);
 }
