@@ -936,7 +936,7 @@ typedef enum laves_format {
   LAVES_FORMAT_MEDIT,
   LAVES_FORMAT_TETGEN,  ///< .node, .ele and .face beside one another
   LAVES_FORMAT_VTKHDF,
-  LAVES_FORMAT_VTK,  ///< VTK's older form, "legacy"
+  LAVES_FORMAT_VTK,   ///< VTK's older form, "legacy"
   LAVES_FORMAT_XDMF,  ///< .xdmf and .h5 beside one another
   LAVES_FORMAT_EXODUS,
   LAVES_FORMAT_ABAQUS,

@@ -27,8 +27,9 @@ static bool has(const int32_t face[3], int32_t vertex) { return face[0] == verte
 static void hang_up(const laves_mesh *mesh, hooks *h) {
   for (size_t i = 0; i < mesh->face_count; i++) h->start[lowest(mesh->faces[i]) + 1]++;
   for (size_t v = 0; v < mesh->vertex_count; v++) h->start[v + 1] += h->start[v];
-  for (size_t i = 0; i < mesh->face_count; i++) h->faces[h->start[lowest(mesh->faces[i])]++] = (uint32_t)i; /* start[v] runs on ... */
-  memmove(h->start + 1, h->start, mesh->vertex_count * sizeof *h->start);                                  /* ... and is put back */
+  for (size_t i = 0; i < mesh->face_count; i++)
+    h->faces[h->start[lowest(mesh->faces[i])]++] = (uint32_t)i;           /* start[v] runs on ... */
+  memmove(h->start + 1, h->start, mesh->vertex_count * sizeof *h->start); /* ... and is put back */
   h->start[0] = 0;
 }
 
@@ -39,7 +40,8 @@ static void find_side(const laves_mesh *mesh, const hooks *h, size_t tet, int co
   const int32_t low = lowest(face);
   for (size_t k = h->start[low]; k < h->start[low + 1]; k++) {
     const int32_t *other = mesh->faces[h->faces[k]];
-    if (has(other, face[0]) && has(other, face[1]) && has(other, face[2])) sides[h->faces[k]] = 4 * (uint64_t)tet + (uint64_t)corner;
+    if (has(other, face[0]) && has(other, face[1]) && has(other, face[2]))
+      sides[h->faces[k]] = 4 * (uint64_t)tet + (uint64_t)corner;
   }
 }
 
@@ -138,8 +140,7 @@ static bool is_label_character(char c) { return is_letter(c) || (c >= '0' && c <
 static void make_label(const char *name, const char *general, laves__label label) {
   size_t length = 0;
   if (!is_letter(name[0])) length = (size_t)snprintf(label, LAVES__LABEL_MAX, "%s_", general);
-  for (; *name && length < LAVES__LABEL_MAX - 24; name++)
-    label[length++] = is_label_character(*name) ? *name : '_';
+  for (; *name && length < LAVES__LABEL_MAX - 24; name++) label[length++] = is_label_character(*name) ? *name : '_';
   label[length] = 0;
 }
 
@@ -163,7 +164,8 @@ laves__label *laves__labels_make(laves_context *context, const laves_mesh *mesh,
     laves__tag_name(mesh, dimension, order, i, name);
     make_label(name, general, labels[i]);
     const size_t length = strlen(labels[i]);
-    for (size_t k = i + 1; is_taken(labels, i, labels[i]); k++) snprintf(labels[i] + length, sizeof labels[i] - length, "_%zu", k);
+    for (size_t k = i + 1; is_taken(labels, i, labels[i]); k++)
+      snprintf(labels[i] + length, sizeof labels[i] - length, "_%zu", k);
   }
   return labels;
 }

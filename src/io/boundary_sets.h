@@ -1,5 +1,5 @@
-/* The boundary as solvers want it: for each face tag its faces, as sides of tetrahedra, and its vertices; and names for all groups
- * that are words. For Abaqus and Exodus. */
+/* The boundary as solvers want it: for each face tag its faces, as sides of tetrahedra, and its vertices; and names for all
+ * groups that are words. For Abaqus and Exodus. */
 #ifndef LAVES_IO_BOUNDARY_SETS_H
 #define LAVES_IO_BOUNDARY_SETS_H
 

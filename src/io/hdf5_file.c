@@ -5,9 +5,8 @@
  *
  *   superblock | object header of each group and array | numbers of each array, from multiples of 8 bytes on
  *
- * Headers do not depend in length on the places that they name, so they are laid out twice: first for their lengths, then with the
- * places.
- * Source: The HDF Group, "HDF5 File Format Specification Version 3.0", sections II.A, III.B, IV.A.1.a and IV.A.2. */
+ * Headers do not depend in length on the places that they name, so they are laid out twice: first for their lengths, then with
+ * the places. Source: The HDF Group, "HDF5 File Format Specification Version 3.0", sections II.A, III.B, IV.A.1.a and IV.A.2. */
 #include "io/hdf5_file.h"
 
 #include <stdio.h>
@@ -257,11 +256,11 @@ static void put_object(laves__hdf5_file *file, size_t i) {
 
 static void put_superblock(laves__hdf5_file *file, uint64_t file_bytes) {
   put_bytes(file, "\211HDF\r\n\032\n", 8);
-  put(file, 0, 5);  /* versions */
-  put(file, 8, 1);  /* bytes of a place */
-  put(file, 8, 1);  /* and of a length */
+  put(file, 0, 5); /* versions */
+  put(file, 8, 1); /* bytes of a place */
+  put(file, 8, 1); /* and of a length */
   put(file, 0, 1);
-  put(file, 4, 2);  /* of groups in an older form, which there are none of */
+  put(file, 4, 2); /* of groups in an older form, which there are none of */
   put(file, 16, 2);
   put(file, 0, 4);
   put(file, 0, 8); /* the file begins here */

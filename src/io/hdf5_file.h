@@ -2,8 +2,8 @@
  *
  *   laves__hdf5_begin -> _group, _attribute, _array ... -> _write
  *
- * All that is told before the arrays' numbers is laid out in memory first, so every place in the file is known and the file is written
- * in one go, arrays by all threads. The first failure sticks to the output, as everywhere. */
+ * All that is told before the arrays' numbers is laid out in memory first, so every place in the file is known and the file is
+ * written in one go, arrays by all threads. The first failure sticks to the output, as everywhere. */
 #ifndef LAVES_IO_HDF5_FILE_H
 #define LAVES_IO_HDF5_FILE_H
 

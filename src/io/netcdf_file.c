@@ -1,10 +1,9 @@
 /* Classic NetCDF files.
  *
- * A file is the header, then the numbers of each variable one behind another, all big-endian, each part filled up to a multiple of four
- * bytes. Places in the file have 64 bits (the form called CDF-2); lengths have 32, and where a variable has 4 GiB or more, 64 as well
- * (CDF-5). The header does not depend in length on the places that it names: it is gone through once to find its length, and once to
- * write it.
- * Source: Unidata, "NetCDF classic format specification", NetCDF User's Guide, Appendix B. */
+ * A file is the header, then the numbers of each variable one behind another, all big-endian, each part filled up to a multiple
+ * of four bytes. Places in the file have 64 bits (the form called CDF-2); lengths have 32, and where a variable has 4 GiB or
+ * more, 64 as well (CDF-5). The header does not depend in length on the places that it names: it is gone through once to find its
+ * length, and once to write it. Source: Unidata, "NetCDF classic format specification", NetCDF User's Guide, Appendix B. */
 #include "io/netcdf_file.h"
 
 #include <stdio.h>
@@ -49,8 +48,8 @@ void laves__netcdf_global(laves__netcdf_file *file, laves__netcdf_attribute attr
   file->attributes[file->attribute_count++] = attribute;
 }
 
-void laves__netcdf_add_variable(laves__netcdf_file *file, const char *name, size_t number, laves__netcdf_type type, int first, int second,
-                            laves__netcdf_attribute attribute, laves__output_items_fn *pack, const void *user) {
+void laves__netcdf_add_variable(laves__netcdf_file *file, const char *name, size_t number, laves__netcdf_type type, int first,
+                                int second, laves__netcdf_attribute attribute, laves__output_items_fn *pack, const void *user) {
   if (file->out->error.result != LAVES_OK) return;
   if (!laves__grow(file->out->context, &file->variables, &file->variable_capacity, file->variable_count + 1,
                    sizeof *file->variables)) {

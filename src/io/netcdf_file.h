@@ -52,8 +52,8 @@ int laves__netcdf_add_dimension(laves__netcdf_file *file, const char *name, size
 void laves__netcdf_global(laves__netcdf_file *file, laves__netcdf_attribute attribute);
 /* second: -1 for one dimension. `pack` writes rows, which are of the second dimension, from `user`. The names and texts of
  * attributes must outlive the file. */
-void laves__netcdf_add_variable(laves__netcdf_file *file, const char *name, size_t number, laves__netcdf_type type, int first, int second,
-                            laves__netcdf_attribute attribute, laves__output_items_fn *pack, const void *user);
+void laves__netcdf_add_variable(laves__netcdf_file *file, const char *name, size_t number, laves__netcdf_type type, int first,
+                                int second, laves__netcdf_attribute attribute, laves__output_items_fn *pack, const void *user);
 /* Writes everything and frees the file's memory, which it does after a failure too. */
 void laves__netcdf_write(laves__netcdf_file *file);
 

@@ -1,9 +1,9 @@
 /* NumPy's .npz.
  *
- * Each member of the archive has its checksum before its bytes, so arrays are made twice: once to sum, in parallel by blocks whose
- * sums are then combined, and once to write. Sizes and places that do not fit into 32 bits go into ZIP64's fields. Times are
- * those of 1 January 1980, so that the same arrays have the same bytes.
- * Source: NumPy manual, numpy.lib.format; PKWARE, "APPNOTE.TXT - .ZIP File Format Specification", 6.3.10, sections 4.3 and 4.5.3. */
+ * Each member of the archive has its checksum before its bytes, so arrays are made twice: once to sum, in parallel by blocks
+ * whose sums are then combined, and once to write. Sizes and places that do not fit into 32 bits go into ZIP64's fields. Times
+ * are those of 1 January 1980, so that the same arrays have the same bytes. Source: NumPy manual, numpy.lib.format; PKWARE,
+ * "APPNOTE.TXT - .ZIP File Format Specification", 6.3.10, sections 4.3 and 4.5.3. */
 #include "io/npz_file.h"
 
 #include <stdio.h>
@@ -23,7 +23,8 @@ static size_t make_header(const laves__npz_array *a, char header[HEADER_MAX]) {
   else
     snprintf(shape, sizeof shape, "(%zu,)", a->rows);
   const size_t start = 10;
-  const int length = snprintf(header + start, HEADER_MAX - start, "{'descr': '%s', 'fortran_order': False, 'shape': %s, }", a->type, shape);
+  const int length =
+      snprintf(header + start, HEADER_MAX - start, "{'descr': '%s', 'fortran_order': False, 'shape': %s, }", a->type, shape);
   const size_t end = (start + (size_t)length + 1 + 63) / 64 * 64;
   LAVES_ASSERT(end <= HEADER_MAX);
   memset(header + start + length, ' ', end - start - (size_t)length - 1);
@@ -137,9 +138,9 @@ static void write_entry(laves__output *out, const laves__npz_array *a) {
   put(out, 0x02014b50, 4);
   put(out, MADE_BY_UNIX, 2);
   put_common(out, a, name_bytes, extra);
-  put(out, 0, 2);                      /* comment */
-  put(out, 0, 2);                      /* disk */
-  put(out, 0, 2);                      /* internal attributes */
+  put(out, 0, 2);                       /* comment */
+  put(out, 0, 2);                       /* disk */
+  put(out, 0, 2);                       /* internal attributes */
   put(out, (uint64_t)0100644 << 16, 4); /* a file that all may read */
   put(out, narrow(a->place), 4);
   laves__output_bytes(out, name, name_bytes);

@@ -6,8 +6,8 @@
  *   *ELSET, ELSET=inlet_S1            the tetrahedra whose first face has the tag, for S1 .. S4
  *   *SURFACE, NAME=inlet              the faces of the tag
  *
- * Numbers count from 1 and are those of the mesh: elements stand in blocks of one region. Real numbers take 20 characters at most, all
- * that the format reads. Abaqus's face S1 is opposite the fourth corner, S2 the third, S3 the first and S4 the second.
+ * Numbers count from 1 and are those of the mesh: elements stand in blocks of one region. Real numbers take 20 characters at
+ * most, all that the format reads. Abaqus's face S1 is opposite the fourth corner, S2 the third, S3 the first and S4 the second.
  * Source: Abaqus documentation, "Input syntax rules" and "Three-dimensional solid element library". */
 #include "io/boundary_sets.h"
 #include "io/write_mesh.h"
@@ -27,7 +27,8 @@ static size_t put_nodes(const void *user, size_t begin, size_t end, char *bytes)
   char *text = bytes;
   for (size_t i = begin; i < end; i++) {
     text = laves__put_integer(text, (int64_t)i + 1);
-    for (int axis = 0; axis < 3; axis++) text = laves__put_double_field(put_comma(text), v3_at(mesh->points[i], axis), REAL_WIDTH);
+    for (int axis = 0; axis < 3; axis++)
+      text = laves__put_double_field(put_comma(text), v3_at(mesh->points[i], axis), REAL_WIDTH);
     *text++ = '\n';
   }
   return (size_t)(text - bytes);

@@ -1,6 +1,6 @@
-/* Exodus II, in a classic NetCDF file: each region is a block of elements, each face tag a side set and a node set, with names; their
- * ids are the numbers of regions and tags, or 1, 2, ... where one of them is not positive. Elements stand in the order of their blocks;
- * elem_num_map tells their numbers in the mesh, from 1.
+/* Exodus II, in a classic NetCDF file: each region is a block of elements, each face tag a side set and a node set, with names;
+ * their ids are the numbers of regions and tags, or 1, 2, ... where one of them is not positive. Elements stand in the order of
+ * their blocks; elem_num_map tells their numbers in the mesh, from 1.
  *
  * Side 1 of a tetrahedron is opposite the third corner, side 2 the first, side 3 the second and side 4 the fourth.
  * Source: Schoof and Yarberry, "EXODUS II: A Finite Element Data Model", SAND92-2137, 1994, and its update of 2018. */
@@ -147,7 +147,8 @@ static void add_blocks(laves__netcdf_file *file, const model *m, int elements, i
   const laves__tag_order *order = &m->regions;
   const int blocks = laves__netcdf_add_dimension(file, "num_el_blk", 0, order->count);
   add_groups(file, m, order, blocks, name_bytes, names, pack_block_names);
-  if (order->order) laves__netcdf_add_variable(file, "elem_num_map", 0, LAVES__NETCDF_INT, elements, -1, no_attribute(), pack_numbers, order);
+  if (order->order)
+    laves__netcdf_add_variable(file, "elem_num_map", 0, LAVES__NETCDF_INT, elements, -1, no_attribute(), pack_numbers, order);
   for (size_t i = 0; i < order->count; i++) {
     const int count = laves__netcdf_add_dimension(file, "num_el_in_blk", i + 1, order->first[i + 1] - order->first[i]);
     const int corners = laves__netcdf_add_dimension(file, "num_nod_per_el", i + 1, 4);
@@ -175,9 +176,12 @@ static void add_boundary(laves__netcdf_file *file, const model *m, int name_byte
 
 static void write_file(laves__output *out, const model *m) {
   static const laves__netcdf_attribute globals[] = {
-      {.name = "api_version", .real = 5.22f, .is_real = true}, {.name = "version", .real = 5.22f, .is_real = true},
-      {.name = "floating_point_word_size", .integer = 8},      {.name = "file_size", .integer = 1},
-      {.name = "maximum_name_length", .integer = NAME_BYTES - 1}, {.name = "int64_status", .integer = 0},
+      {.name = "api_version", .real = 5.22f, .is_real = true},
+      {.name = "version", .real = 5.22f, .is_real = true},
+      {.name = "floating_point_word_size", .integer = 8},
+      {.name = "file_size", .integer = 1},
+      {.name = "maximum_name_length", .integer = NAME_BYTES - 1},
+      {.name = "int64_status", .integer = 0},
       {.name = "title", .text = "tetrahedral mesh"},
   };
   laves__netcdf_file file;
@@ -227,7 +231,8 @@ static void make_sets(laves__output *out, model *m) {
 
 void laves__write_exodus(laves__output *out, const laves_mesh *mesh) {
   if (mesh->tet_count == 0 || mesh->tet_count > INT32_MAX) {
-    laves__output_fail(out, LAVES_ERROR_WRITE, "an Exodus file holds from 1 to 2147483647 tetrahedra, not %zu; choose VTU", mesh->tet_count);
+    laves__output_fail(out, LAVES_ERROR_WRITE, "an Exodus file holds from 1 to 2147483647 tetrahedra, not %zu; choose VTU",
+                       mesh->tet_count);
     return;
   }
   model m = {.mesh = mesh};

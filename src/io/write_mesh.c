@@ -145,10 +145,11 @@ laves_result laves_mesh_write(laves_context *context, const laves_mesh *mesh, co
   if (checked != LAVES_OK) return checked;
   const laves_format format = options->format == LAVES_FORMAT_AUTO ? laves_format_from_path(path) : options->format;
   if (format == LAVES_FORMAT_COUNT)
-    return laves__fail(error, LAVES_ERROR_OPTION,
-                       "the name '%s' does not say in which format to write; end it in .vtu, .msh, .mesh, .meshb, .node, .vtkhdf, .vtk, "
-                       ".xdmf, .exo, .inp, .bdf, .npz, .stl, .obj, .ply or .off, or name a format",
-                       path);
+    return laves__fail(
+        error, LAVES_ERROR_OPTION,
+        "the name '%s' does not say in which format to write; end it in .vtu, .msh, .mesh, .meshb, .node, .vtkhdf, .vtk, "
+        ".xdmf, .exo, .inp, .bdf, .npz, .stl, .obj, .ply or .off, or name a format",
+        path);
   const laves_result held = laves_format_streams(format) ? LAVES_OK : laves__mesh_require_arrays(mesh, "this format", error);
   if (held != LAVES_OK) return held;
   laves__progress_reset(context);

@@ -2,9 +2,9 @@
  * materials, which the user adds. Numbers count from 1, triangles after the tetrahedra.
  *
  * Coordinates are in the long form, whose fields have 16 characters; elements in the short one, of 8, while their numbers fit.
- * Solids and shells share the numbers of properties: where a tag is also the number of a region, a power of ten above all regions is
- * added to every tag. Names are comments, "$ CTRIA3 13 inlet", by the property.
- * Source: MSC Nastran Quick Reference Guide, "Bulk data entries". */
+ * Solids and shells share the numbers of properties: where a tag is also the number of a region, a power of ten above all regions
+ * is added to every tag. Names are comments, "$ CTRIA3 13 inlet", by the property. Source: MSC Nastran Quick Reference Guide,
+ * "Bulk data entries". */
 #include <string.h>
 
 #include "io/tag_order.h"
@@ -16,8 +16,8 @@ static const size_t largest_short = 99999999;
 
 typedef struct deck {
   const laves_mesh *mesh;
-  bool wide;         /* elements too are in the long form */
-  int64_t raise;     /* added to tags */
+  bool wide;     /* elements too are in the long form */
+  int64_t raise; /* added to tags */
   laves__tag_order regions, tags;
 } deck;
 
@@ -92,7 +92,8 @@ static size_t put_tets(const void *user, size_t begin, size_t end, char *bytes) 
   char *text = bytes;
   for (size_t i = begin; i < end; i++) {
     const int32_t *t = d->mesh->tets[i];
-    const int64_t card[6] = {(int64_t)i + 1, number_of(&d->regions, d->mesh->regions, i), t[0] + INT64_C(1), t[1] + INT64_C(1),
+    const int64_t card[6] = {(int64_t)i + 1,    number_of(&d->regions, d->mesh->regions, i),
+                             t[0] + INT64_C(1), t[1] + INT64_C(1),
                              t[2] + INT64_C(1), t[3] + INT64_C(1)};
     text = put_card(text, "CTETRA", card, 6, d->wide);
   }
@@ -137,7 +138,8 @@ static void write_names(laves__output *out, const deck *d, int dimension, const 
   for (size_t i = 0; i < order->count; i++) {
     char name[LAVES__TAG_NAME_MAX];
     laves__tag_name(d->mesh, dimension, order, i, name);
-    laves__output_printf(out, "$ %s %lld %s\n", card, (long long)laves__tag_number(order, i) + (dimension == 2 ? d->raise : 0), name);
+    laves__output_printf(out, "$ %s %lld %s\n", card, (long long)laves__tag_number(order, i) + (dimension == 2 ? d->raise : 0),
+                         name);
   }
 }
 

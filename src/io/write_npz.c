@@ -1,11 +1,11 @@
 /* NumPy's .npz, in two forms.
  *
- * The mesh: points float64 (n, 3), tets int32 (m, 4), faces int32 (k, 3), face_tags int32 (k,), regions int32 (m,), face_sources int32
- * (k,) where they are known; and group_names, group_dimensions, group_tags: the names of regions (3) and face tags (2).
+ * The mesh: points float64 (n, 3), tets int32 (m, 4), faces int32 (k, 3), face_tags int32 (k,), regions int32 (m,), face_sources
+ * int32 (k,) where they are known; and group_names, group_dimensions, group_tags: the names of regions (3) and face tags (2).
  *
- * A grid for deep marching tetrahedra: vertices float32 (n, 3) in the cube [-1/2, 1/2]^3 and indices int64 (m, 4), which are the names,
- * and the cube, that programs for it expect. The longest side of the box fills the cube.
- * Source: Shen et al., "Deep Marching Tetrahedra: a Hybrid Representation for High-Resolution 3D Shape Synthesis", 2021. */
+ * A grid for deep marching tetrahedra: vertices float32 (n, 3) in the cube [-1/2, 1/2]^3 and indices int64 (m, 4), which are the
+ * names, and the cube, that programs for it expect. The longest side of the box fills the cube. Source: Shen et al., "Deep
+ * Marching Tetrahedra: a Hybrid Representation for High-Resolution 3D Shape Synthesis", 2021. */
 #include <stdio.h>
 #include <string.h>
 

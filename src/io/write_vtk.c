@@ -1,7 +1,8 @@
 /* VTK's older "legacy" file, version 3.0, text or binary (big-endian, as the format wants): points as doubles, cells with a count
  * before their corners, cell data "region", "class" and, where it is known, "source_face", as in VTU. Names of groups are field
  * data as there: arrays of pairs (number, dimension).
- * Source: VTK file formats, "Simple Legacy Formats", https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html */
+ * Source: VTK file formats, "Simple Legacy Formats", https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
+ */
 #include <string.h>
 
 #include "io/big_endian.h"
@@ -198,7 +199,8 @@ void laves__write_vtk(laves__output *out, const laves_mesh *mesh, bool ascii) {
   const size_t cells = laves__cell_count(mesh), triangles = laves__cell_faces(mesh);
   const char *end = ascii ? "" : "\n";
   out->expected = (ascii ? 56.0 : 24.0) * (double)mesh->vertex_count + (ascii ? 38.0 : 29.0) * (double)cells;
-  laves__output_printf(out, "# vtk DataFile Version 3.0\ntetrahedral mesh\n%s\nDATASET UNSTRUCTURED_GRID\n", ascii ? "ASCII" : "BINARY");
+  laves__output_printf(out, "# vtk DataFile Version 3.0\ntetrahedral mesh\n%s\nDATASET UNSTRUCTURED_GRID\n",
+                       ascii ? "ASCII" : "BINARY");
   laves__output_printf(out, "POINTS %zu double\n", mesh->vertex_count);
   write_items(out, &points, mesh->vertex_count, mesh, ascii);
   laves__output_printf(out, "%sCELLS %zu %zu\n", end, cells, cells + laves__cell_corners(mesh));

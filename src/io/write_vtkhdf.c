@@ -1,6 +1,7 @@
 /* VTKHDF, version 1.0: VTK's HDF5 file for unstructured grids. Points Float64, connectivity and offsets Int32, or Int64 from 2^31
  * corners on, cell data and names as in VTU (write_vtu.c). Nothing is compressed.
- * Source: VTK file formats, "VTKHDF File Format", https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format/index.html */
+ * Source: VTK file formats, "VTKHDF File Format", https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format/index.html
+ */
 #include <string.h>
 
 #include "io/hdf5_file.h"
@@ -131,8 +132,7 @@ void laves__write_vtkhdf(laves__output *out, const laves_mesh *mesh) {
   const size_t root = laves__hdf5_group(&file, LAVES__HDF5_ROOT, "VTKHDF");
   laves__hdf5_integers(&file, root, "Version", version, 2);
   laves__hdf5_text(&file, root, "Type", "UnstructuredGrid");
-  for (int i = 0; i < 3; i++)
-    laves__hdf5_array(&file, root, count_names[i], LAVES__HDF5_INT64, 1, 0, pack_count, &counts[i]);
+  for (int i = 0; i < 3; i++) laves__hdf5_array(&file, root, count_names[i], LAVES__HDF5_INT64, 1, 0, pack_count, &counts[i]);
   laves__hdf5_array(&file, root, "Points", LAVES__HDF5_FLOAT64, mesh->vertex_count, 3, pack_points, mesh);
   add_cells(&file, mesh, root);
   name_pairs *pairs = NULL;

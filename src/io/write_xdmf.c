@@ -1,6 +1,6 @@
-/* XDMF, version 3: an XML file that tells what the arrays of an HDF5 file beside it mean. One uniform grid: of tetrahedra or, when the
- * mesh carries face tags or sources, mixed with its boundary triangles, as in VTU. Names are an "Information" in meshio's form.
- * Source: XDMF model and format, https://www.xdmf.org/index.php/XDMF_Model_and_Format */
+/* XDMF, version 3: an XML file that tells what the arrays of an HDF5 file beside it mean. One uniform grid: of tetrahedra or,
+ * when the mesh carries face tags or sources, mixed with its boundary triangles, as in VTU. Names are an "Information" in
+ * meshio's form. Source: XDMF model and format, https://www.xdmf.org/index.php/XDMF_Model_and_Format */
 #include <string.h>
 
 #include "io/hdf5_file.h"
@@ -115,9 +115,10 @@ void laves__write_xdmf(laves__output *out, const laves_mesh *mesh, const char *n
   static const char int32[] = "DataType=\"Int\" Precision=\"4\"";
   const size_t cells = laves__cell_count(mesh);
   const bool mixed = is_mixed(mesh);
-  laves__output_printf(out,
-                       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\"Grid\" GridType=\"Uniform\">\n"
-                       "      <Geometry GeometryType=\"XYZ\">\n");
+  laves__output_printf(
+      out,
+      "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\"Grid\" GridType=\"Uniform\">\n"
+      "      <Geometry GeometryType=\"XYZ\">\n");
   write_item(out, name, "points", "DataType=\"Float\" Precision=\"8\"", mesh->vertex_count, 3);
   laves__output_printf(out, "      </Geometry>\n      <Topology TopologyType=\"%s\" NumberOfElements=\"%zu\">\n",
                        mixed ? "Mixed" : "Tetrahedron", cells);

@@ -139,7 +139,8 @@ static void test_shortest(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_integers),      cmocka_unit_test(test_known_doubles), cmocka_unit_test(test_round_trip),
-      cmocka_unit_test(test_powers_of_two), cmocka_unit_test(test_shortest), cmocka_unit_test(test_known_fields), cmocka_unit_test(test_fields),
+      cmocka_unit_test(test_powers_of_two), cmocka_unit_test(test_shortest),      cmocka_unit_test(test_known_fields),
+      cmocka_unit_test(test_fields),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -316,10 +316,15 @@ static void memory_goes_with_the_surface(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(same_as_in_memory),        cmocka_unit_test(any_range_may_be_read),
-      cmocka_unit_test(ranges_end_with_the_mesh), cmocka_unit_test(files_are_the_same),
-      cmocka_unit_test(files_of_arrays_are_the_same), cmocka_unit_test(other_formats_refuse),     cmocka_unit_test(checks_refuse),
-      cmocka_unit_test(some_wishes_need_memory),  cmocka_unit_test(memory_goes_with_the_surface),
+      cmocka_unit_test(same_as_in_memory),
+      cmocka_unit_test(any_range_may_be_read),
+      cmocka_unit_test(ranges_end_with_the_mesh),
+      cmocka_unit_test(files_are_the_same),
+      cmocka_unit_test(files_of_arrays_are_the_same),
+      cmocka_unit_test(other_formats_refuse),
+      cmocka_unit_test(checks_refuse),
+      cmocka_unit_test(some_wishes_need_memory),
+      cmocka_unit_test(memory_goes_with_the_surface),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -13,8 +13,8 @@
 #include "fixtures/folders.h"
 #include "fixtures/tagged_cube.h"
 
-static const char *const names[] = {"a.vtu", "a.msh", "a.mesh", "a.meshb", "a.node", "a.vtkhdf", "a.vtk",
-                                    "a.xdmf", "a.exo", "a.inp", "a.bdf", "a.npz", "a.stl", "a.obj", "a.ply", "a.off"};
+static const char *const names[] = {"a.vtu", "a.msh", "a.mesh", "a.meshb", "a.node", "a.vtkhdf", "a.vtk", "a.xdmf",
+                                    "a.exo", "a.inp", "a.bdf",  "a.npz",   "a.stl",  "a.obj",    "a.ply", "a.off"};
 
 typedef struct fixture {
   laves_context *context;
@@ -215,11 +215,12 @@ static void test_texts(void **state) {
               "# vtk DataFile Version 3.0\ntetrahedral mesh\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0\n0.1 0 0\n"
               "0 1 0\n0 0 1e-9\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\nCELL_DATA 1\nFIELD FieldData 2\nregion 1 1 int\n1\n"
               "class 1 1 unsigned_char\n1\n");
-  assert_text(f, "one.inp", LAVES_FORMAT_AUTO,
-              "*HEADING\n4 vertices, 1 tetrahedra\n*NODE, NSET=Nall\n1, 0., 0., 0.\n2, .1, 0., 0.\n3, 0., 1., 0.\n4, 0., 0., 1.E-9\n"
-              "*ELEMENT, TYPE=C3D4, ELSET=solid\n1, 1, 2, 3, 4\n*NSET, NSET=boundary\n2, 3, 4, 1\n*ELSET, ELSET=boundary_S1\n1\n"
-              "*ELSET, ELSET=boundary_S2\n1\n*ELSET, ELSET=boundary_S3\n1\n*ELSET, ELSET=boundary_S4\n1\n"
-              "*SURFACE, NAME=boundary, TYPE=ELEMENT\nboundary_S1, S1\nboundary_S2, S2\nboundary_S3, S3\nboundary_S4, S4\n");
+  assert_text(
+      f, "one.inp", LAVES_FORMAT_AUTO,
+      "*HEADING\n4 vertices, 1 tetrahedra\n*NODE, NSET=Nall\n1, 0., 0., 0.\n2, .1, 0., 0.\n3, 0., 1., 0.\n4, 0., 0., 1.E-9\n"
+      "*ELEMENT, TYPE=C3D4, ELSET=solid\n1, 1, 2, 3, 4\n*NSET, NSET=boundary\n2, 3, 4, 1\n*ELSET, ELSET=boundary_S1\n1\n"
+      "*ELSET, ELSET=boundary_S2\n1\n*ELSET, ELSET=boundary_S3\n1\n*ELSET, ELSET=boundary_S4\n1\n"
+      "*SURFACE, NAME=boundary, TYPE=ELEMENT\nboundary_S1, S1\nboundary_S2, S2\nboundary_S3, S3\nboundary_S4, S4\n");
   assert_text(f, "one.bdf", LAVES_FORMAT_AUTO,
               "$ 4 vertices, 1 tetrahedra\n$ CTETRA 1 solid\n$ CTRIA3 11 boundary\nBEGIN BULK\n"
               "GRID*   1                               0.              0.              \n*       0.              \n"
