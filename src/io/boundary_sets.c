@@ -89,10 +89,12 @@ static void stamp(const laves_mesh *mesh, laves__boundary_sets *sets, uint32_t *
 
 static void find_vertices(laves__output *out, const laves_mesh *mesh, laves__boundary_sets *sets) {
   uint32_t *stamps = laves__alloc_zeroed(out->context, mesh->vertex_count, sizeof *stamps);
-  if (stamps) {
-    stamp(mesh, sets, stamps, NULL);
-    sets->vertices = laves__alloc(out->context, sets->first[sets->tags.count], sizeof *sets->vertices);
+  if (!stamps) {
+    laves__output_fail_memory(out);
+    return;
   }
+  stamp(mesh, sets, stamps, NULL);
+  sets->vertices = laves__alloc(out->context, sets->first[sets->tags.count], sizeof *sets->vertices);
   if (sets->vertices) {
     memset(stamps, 0, mesh->vertex_count * sizeof *stamps);
     stamp(mesh, sets, stamps, sets->vertices);
@@ -123,7 +125,7 @@ bool laves__boundary_sets_make(laves__output *out, const laves_mesh *mesh, laves
 }
 
 void laves__boundary_sets_free(laves_context *context, const laves_mesh *mesh, laves__boundary_sets *sets) {
-  if (sets->vertices) laves__free(context, sets->vertices, sets->first[sets->tags.count], sizeof *sets->vertices);
+  if (sets->vertices && sets->first) laves__free(context, sets->vertices, sets->first[sets->tags.count], sizeof *sets->vertices);
   laves__free(context, sets->first, sets->tags.count + 1, sizeof *sets->first);
   laves__free(context, sets->sides, mesh->face_count, sizeof *sets->sides);
   laves__tag_order_free(context, &sets->tags);

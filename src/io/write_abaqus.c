@@ -123,12 +123,13 @@ static void write_boundary(laves__output *out, const laves_mesh *mesh) {
   laves__label *labels = laves__labels_make(out->context, mesh, 2, &sets.tags);
   int32_t *tets = laves__alloc(out->context, mesh->face_count, sizeof *tets);
   size_t *first = laves__alloc(out->context, SIDES * tags + 1, sizeof *first);
-  if (labels && tets && first)
+  if (labels && tets && first) {
     list_sides(&sets, tets, first);
-  else
+    for (size_t tag = 0; tag < tags && out->error.result == LAVES_OK && mesh->face_count > 0; tag++)
+      write_tag(out, &sets, tag, labels[tag], tets, first + SIDES * tag);
+  } else {
     laves__output_fail_memory(out);
-  for (size_t tag = 0; tag < tags && out->error.result == LAVES_OK && mesh->face_count > 0; tag++)
-    write_tag(out, &sets, tag, labels[tag], tets, first + SIDES * tag);
+  }
   laves__free(out->context, first, SIDES * tags + 1, sizeof *first);
   laves__free(out->context, tets, mesh->face_count, sizeof *tets);
   laves__free(out->context, labels, tags, sizeof *labels);
