@@ -9,20 +9,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/mesh_pack.h"
 #include "io/npz_file.h"
 #include "io/write_mesh.h"
 
 /* ---- the mesh ---- */
-
-static size_t pack_points(const void *user, size_t begin, size_t end, char *bytes) {
-  laves__mesh_points(user, begin, end, (laves__vec3 *)(void *)bytes);
-  return (end - begin) * sizeof(laves__vec3);
-}
-
-static size_t pack_tets(const void *user, size_t begin, size_t end, char *bytes) {
-  laves__mesh_tets(user, begin, end, (int32_t(*)[4])(void *)bytes);
-  return (end - begin) * 16;
-}
 
 static size_t pack_faces(const void *user, size_t begin, size_t end, char *bytes) {
   const laves_mesh *mesh = user;
@@ -99,8 +90,8 @@ void laves__write_npz(laves__output *out, const laves_mesh *mesh) {
   char name_type[10];
   snprintf(name_type, sizeof name_type, "<U%d", (int)NAME_CHARACTERS);
   laves__npz_array arrays[] = {
-      {"points", "<f8", mesh->vertex_count, 3, 24, pack_points, mesh, 0, 0},
-      {"tets", "<i4", mesh->tet_count, 4, 16, pack_tets, mesh, 0, 0},
+      {"points", "<f8", mesh->vertex_count, 3, 24, laves__pack_points, mesh, 0, 0},
+      {"tets", "<i4", mesh->tet_count, 4, 16, laves__pack_tets, mesh, 0, 0},
       {"faces", "<i4", mesh->face_count, 3, 12, pack_faces, mesh, 0, 0},
       {"face_tags", "<i4", mesh->face_count, 0, 4, pack_tags, mesh, 0, 0},
       {"regions", "<i4", mesh->tet_count, 0, 4, pack_regions, mesh, 0, 0},

@@ -6,12 +6,8 @@
 
 #include "io/hdf5_file.h"
 #include "io/mesh_cells.h"
+#include "io/mesh_pack.h"
 #include "io/write_mesh.h"
-
-static size_t pack_points(const void *user, size_t begin, size_t end, char *bytes) {
-  laves__mesh_points(user, begin, end, (laves__vec3 *)(void *)bytes);
-  return (end - begin) * sizeof(laves__vec3);
-}
 
 static size_t pack_corners(const void *user, size_t begin, size_t end, char *bytes) {
   const laves_mesh *mesh = user;
@@ -57,27 +53,6 @@ static size_t pack_types(const void *user, size_t begin, size_t end, char *bytes
   return end - begin;
 }
 
-static size_t pack_regions(const void *user, size_t begin, size_t end, char *bytes) {
-  for (size_t i = begin; i < end; i++) {
-    const int32_t region = laves__cell_region(user, i);
-    memcpy(bytes + 4 * (i - begin), &region, 4);
-  }
-  return (end - begin) * 4;
-}
-
-static size_t pack_classes(const void *user, size_t begin, size_t end, char *bytes) {
-  for (size_t i = begin; i < end; i++) *bytes++ = (char)laves__cell_class(user, i);
-  return end - begin;
-}
-
-static size_t pack_sources(const void *user, size_t begin, size_t end, char *bytes) {
-  for (size_t i = begin; i < end; i++) {
-    const int32_t source = laves__cell_source(user, i);
-    memcpy(bytes + 4 * (i - begin), &source, 4);
-  }
-  return (end - begin) * 4;
-}
-
 static size_t pack_count(const void *user, size_t begin, size_t end, char *bytes) {
   if (end > begin) memcpy(bytes, user, 8);
   return (end - begin) * 8;
@@ -118,9 +93,10 @@ static void add_cells(laves__hdf5_file *file, const laves_mesh *mesh, size_t roo
   laves__hdf5_array(file, root, "Offsets", index, cells + 1, 0, wide ? pack_wide_offsets : pack_offsets, mesh);
   laves__hdf5_array(file, root, "Types", LAVES__HDF5_UINT8, cells, 0, pack_types, mesh);
   const size_t data = laves__hdf5_group(file, root, "CellData");
-  laves__hdf5_array(file, data, "region", LAVES__HDF5_INT32, cells, 0, pack_regions, mesh);
-  laves__hdf5_array(file, data, "class", LAVES__HDF5_UINT8, cells, 0, pack_classes, mesh);
-  if (mesh->face_sources) laves__hdf5_array(file, data, "source_face", LAVES__HDF5_INT32, cells, 0, pack_sources, mesh);
+  laves__hdf5_array(file, data, "region", LAVES__HDF5_INT32, cells, 0, laves__pack_cell_regions, mesh);
+  laves__hdf5_array(file, data, "class", LAVES__HDF5_UINT8, cells, 0, laves__pack_cell_classes, mesh);
+  if (mesh->face_sources)
+    laves__hdf5_array(file, data, "source_face", LAVES__HDF5_INT32, cells, 0, laves__pack_cell_sources, mesh);
 }
 
 void laves__write_vtkhdf(laves__output *out, const laves_mesh *mesh) {
@@ -133,7 +109,7 @@ void laves__write_vtkhdf(laves__output *out, const laves_mesh *mesh) {
   laves__hdf5_integers(&file, root, "Version", version, 2);
   laves__hdf5_text(&file, root, "Type", "UnstructuredGrid");
   for (int i = 0; i < 3; i++) laves__hdf5_array(&file, root, count_names[i], LAVES__HDF5_INT64, 1, 0, pack_count, &counts[i]);
-  laves__hdf5_array(&file, root, "Points", LAVES__HDF5_FLOAT64, mesh->vertex_count, 3, pack_points, mesh);
+  laves__hdf5_array(&file, root, "Points", LAVES__HDF5_FLOAT64, mesh->vertex_count, 3, laves__pack_points, mesh);
   add_cells(&file, mesh, root);
   name_pairs *pairs = NULL;
   const bool named = laves__cell_name_count(mesh) > 0;

@@ -6,6 +6,7 @@
 #include "io/hdf5_file.h"
 #include "io/mesh_cells.h"
 #include "io/mesh_items.h"
+#include "io/mesh_pack.h"
 #include "io/write_mesh.h"
 #include "io/write_text.h"
 
@@ -19,16 +20,6 @@ static size_t mixed_numbers(const laves_mesh *mesh) {
 }
 
 /* ---- the arrays ---- */
-
-static size_t pack_points(const void *user, size_t begin, size_t end, char *bytes) {
-  laves__mesh_points(user, begin, end, (laves__vec3 *)(void *)bytes);
-  return (end - begin) * sizeof(laves__vec3);
-}
-
-static size_t pack_tets(const void *user, size_t begin, size_t end, char *bytes) {
-  laves__mesh_tets(user, begin, end, (int32_t(*)[4])(void *)bytes);
-  return (end - begin) * 16;
-}
 
 static int32_t mixed_number(laves__tet_reader *reader, size_t i) {
   const size_t tet_numbers = TET_NUMBERS * reader->mesh->tet_count;
@@ -46,39 +37,19 @@ static size_t pack_mixed(const void *user, size_t begin, size_t end, char *bytes
   return (end - begin) * 4;
 }
 
-static size_t pack_regions(const void *user, size_t begin, size_t end, char *bytes) {
-  for (size_t i = begin; i < end; i++) {
-    const int32_t region = laves__cell_region(user, i);
-    memcpy(bytes + 4 * (i - begin), &region, 4);
-  }
-  return (end - begin) * 4;
-}
-
-static size_t pack_classes(const void *user, size_t begin, size_t end, char *bytes) {
-  for (size_t i = begin; i < end; i++) *bytes++ = (char)laves__cell_class(user, i);
-  return end - begin;
-}
-
-static size_t pack_sources(const void *user, size_t begin, size_t end, char *bytes) {
-  for (size_t i = begin; i < end; i++) {
-    const int32_t source = laves__cell_source(user, i);
-    memcpy(bytes + 4 * (i - begin), &source, 4);
-  }
-  return (end - begin) * 4;
-}
-
 void laves__write_xdmf_data(laves__output *out, const laves_mesh *mesh) {
   const size_t cells = laves__cell_count(mesh), root = LAVES__HDF5_ROOT;
   laves__hdf5_file file;
   laves__hdf5_begin(&file, out);
-  laves__hdf5_array(&file, root, "points", LAVES__HDF5_FLOAT64, mesh->vertex_count, 3, pack_points, mesh);
+  laves__hdf5_array(&file, root, "points", LAVES__HDF5_FLOAT64, mesh->vertex_count, 3, laves__pack_points, mesh);
   if (is_mixed(mesh))
     laves__hdf5_array(&file, root, "cells", LAVES__HDF5_INT32, mixed_numbers(mesh), 0, pack_mixed, mesh);
   else
-    laves__hdf5_array(&file, root, "cells", LAVES__HDF5_INT32, mesh->tet_count, 4, pack_tets, mesh);
-  laves__hdf5_array(&file, root, "region", LAVES__HDF5_INT32, cells, 0, pack_regions, mesh);
-  laves__hdf5_array(&file, root, "class", LAVES__HDF5_UINT8, cells, 0, pack_classes, mesh);
-  if (mesh->face_sources) laves__hdf5_array(&file, root, "source_face", LAVES__HDF5_INT32, cells, 0, pack_sources, mesh);
+    laves__hdf5_array(&file, root, "cells", LAVES__HDF5_INT32, mesh->tet_count, 4, laves__pack_tets, mesh);
+  laves__hdf5_array(&file, root, "region", LAVES__HDF5_INT32, cells, 0, laves__pack_cell_regions, mesh);
+  laves__hdf5_array(&file, root, "class", LAVES__HDF5_UINT8, cells, 0, laves__pack_cell_classes, mesh);
+  if (mesh->face_sources)
+    laves__hdf5_array(&file, root, "source_face", LAVES__HDF5_INT32, cells, 0, laves__pack_cell_sources, mesh);
   laves__hdf5_write(&file);
 }
 
