@@ -112,7 +112,8 @@ static laves_result write_tetgen(laves_context *context, const laves_mesh *mesh,
 static laves_result write_xdmf(laves_context *context, const laves_mesh *mesh, const char *path, laves_error *error) {
   const char *dot = has_extension(path, ".xdmf") || has_extension(path, ".xmf") ? strrchr(path, '.') : path + strlen(path);
   char data[PATH_MAX];
-  snprintf(data, sizeof data, "%.*s.h5", (int)(dot - path), path);
+  if (snprintf(data, sizeof data, "%.*s.h5", (int)(dot - path), path) >= (int)sizeof data)
+    return laves__fail(error, LAVES_ERROR_WRITE, "cannot write: the file name is longer than %d bytes", PATH_MAX - 1);
   const char *slash = strrchr(data, '/');
   laves__output outs[2];
   laves_result result = laves__output_open(&outs[0], context, data);
