@@ -59,7 +59,7 @@ class Axes:
         return HEIGHT - BOTTOM - (math.log10(seconds) - self.y0) / (self.y1 - self.y0) * (HEIGHT - TOP - BOTTOM)
 
 
-def grid(axes):
+def grid(axes, title, across):
     parts, right, bottom = [], WIDTH - RIGHT, HEIGHT - BOTTOM
     for step, power in ticks(axes.y0, axes.y1):
         y = axes.y(step * 10.0 ** power)
@@ -69,8 +69,8 @@ def grid(axes):
         x = axes.x(step * 10.0 ** power)
         parts.append(f'<line class="grid" x1="{x:.1f}" x2="{x:.1f}" y1="{TOP}" y2="{bottom}"/>'
                      f'<text class="soft" x="{x:.1f}" y="{bottom + 19}" text-anchor="middle">{tick_text(step, power)}</text>')
-    parts.append(f'<text class="soft" x="{(LEFT + right) / 2:.0f}" y="{HEIGHT - 10}" text-anchor="middle">tetrahedra</text>'
-                 f'<text class="ink title" x="{LEFT}" y="24">CPU seconds against tetrahedra, one thread, files included</text>')
+    parts.append(f'<text class="soft" x="{(LEFT + right) / 2:.0f}" y="{HEIGHT - 10}" text-anchor="middle">{across}</text>'
+                 f'<text class="ink title" x="{LEFT}" y="24">{title}</text>')
     return parts
 
 
@@ -104,8 +104,14 @@ def draw_plot(sections, path):
     lines = {name: sorted(points) for name, points in lines.items() if name in COLORS and len(points) >= 2}
     if "laves" not in lines:
         return False
+    write_plot(lines, path, "CPU seconds against tetrahedra, one thread, files included", "tetrahedra")
+    return True
+
+
+def write_plot(lines, path, title, across):
+    """Lines by name, each a sorted list of (x, y) above zero, on log axes."""
     axes = Axes([p for points in lines.values() for p in points])
-    parts = grid(axes)
+    parts = grid(axes, title, across)
     for name in sorted(lines, key=lambda n: n == "laves"):
         parts += line_parts(axes, name, lines[name])
     ends = [(axes.y(points[-1][1]), name) for name, points in lines.items()]
@@ -115,6 +121,5 @@ def draw_plot(sections, path):
         parts.append(f'<text class="{class_of(name)}{bold}" x="{x:.1f}" y="{label + 4:.1f}">{name}</text>')
     with open(path, "w") as file:
         file.write(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" role="img">'
-                   "<title>CPU seconds against tetrahedra for laves and other meshers, on log axes</title>"
+                   f"<title>{title}, for laves and other meshers, on log axes</title>"
                    + style() + f'<rect class="page" width="{WIDTH}" height="{HEIGHT}" rx="6"/>' + "\n".join(parts) + "</svg>\n")
-    return True

@@ -203,9 +203,9 @@ const option option_rows[] = {
     {"face-sources", 0, MESH, IN_FILES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(face_sources), 0,
      "write for each boundary triangle the nearest face of the input surface, from 0 (source_face in VTU)"},
     {"stream", 0, MESH, IN_FILES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(stream), 0,
-     "make points and tetrahedra while they are written, for meshes larger than memory (docs/streaming.md): VTU and Gmsh only, "
-     "one "
-     "size and no regions, no certificate"},
+     "make points and tetrahedra while they are written, for meshes larger than memory (docs/streaming.md): VTU, Gmsh, VTKHDF, "
+     "VTK, XDMF, "
+     "NPZ; one size and no regions, no certificate"},
     {"certificate", 0, MESH, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0,
      "the first output's name with .certificate.json for its extension", MEMBER(certificate), 0,
      "where the certificate goes (docs/certificate.md); none: write none and leave the final check out"},

@@ -115,6 +115,14 @@ static const char *format_extension(laves_format format) {
       return "mesh";
     case LAVES_FORMAT_TETGEN:
       return "ele";
+    case LAVES_FORMAT_EXODUS:
+      return "exo";
+    case LAVES_FORMAT_ABAQUS:
+      return "inp";
+    case LAVES_FORMAT_NASTRAN:
+      return "bdf";
+    case LAVES_FORMAT_DMTET:
+      return "npz";
     default:
       return laves_format_name(format);
   }

@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -173,8 +174,18 @@ static double file_bytes(const char *path) {
   return stat(path, &status) == 0 ? (double)status.st_size : 0;
 }
 
+/* XDMF's arrays are beside it. */
+static double written_bytes_xdmf(const char *path) {
+  const char *dot = strrchr(path, '.');
+  const bool known = dot && (strcasecmp(dot, ".xdmf") == 0 || strcasecmp(dot, ".xmf") == 0);
+  char data[PATH_CAPACITY + 8];
+  snprintf(data, sizeof data, "%.*s.h5", known ? (int)(dot - path) : (int)strlen(path), path);
+  return file_bytes(path) + file_bytes(data);
+}
+
 /* TetGen's three files share a base name. */
 static double written_bytes(const output *item) {
+  if (item->format == LAVES_FORMAT_XDMF) return written_bytes_xdmf(item->path);
   if (item->format != LAVES_FORMAT_TETGEN) return file_bytes(item->path);
   static const char *const extensions[] = {".node", ".ele", ".face"};
   const char *dot = strrchr(item->path, '.');

@@ -935,7 +935,15 @@ typedef enum laves_format {
   LAVES_FORMAT_GMSH41,
   LAVES_FORMAT_MEDIT,
   LAVES_FORMAT_TETGEN,  ///< .node, .ele and .face beside one another
-  LAVES_FORMAT_STL,     ///< the boundary only, as are the rest
+  LAVES_FORMAT_VTKHDF,
+  LAVES_FORMAT_VTK,   ///< VTK's older form, "legacy"
+  LAVES_FORMAT_XDMF,  ///< .xdmf and .h5 beside one another
+  LAVES_FORMAT_EXODUS,
+  LAVES_FORMAT_ABAQUS,
+  LAVES_FORMAT_NASTRAN,
+  LAVES_FORMAT_NPZ,    ///< NumPy's arrays
+  LAVES_FORMAT_DMTET,  ///< NumPy's arrays as deep marching tetrahedra take them: points in the unit cube, and tets
+  LAVES_FORMAT_STL,    ///< the boundary only, as are the rest
   LAVES_FORMAT_OBJ,
   LAVES_FORMAT_PLY,
   LAVES_FORMAT_OFF,
@@ -955,7 +963,7 @@ LAVES_API const char *laves_format_name(laves_format format);
 LAVES_API laves_format laves_format_from_name(const char *name);
 /// The format that a file name's extension means, or LAVES_FORMAT_COUNT.
 LAVES_API laves_format laves_format_from_path(const char *path);
-/// Whether a streamed mesh (laves_options.streamed) can be written in it: VTU and Gmsh's.
+/// Whether a streamed mesh (laves_options.streamed) can be written in it: VTU, Gmsh's, VTKHDF, legacy VTK, XDMF and NPZ.
 LAVES_API bool laves_format_streams(laves_format format);
 
 /// Writes a mesh, whole or not at all: a temporary file beside the target is renamed when complete.

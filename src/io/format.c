@@ -5,19 +5,24 @@
 #include "base/base.h"
 
 static const char *const names[LAVES_FORMAT_COUNT] = {
-    [LAVES_FORMAT_AUTO] = "auto",     [LAVES_FORMAT_VTU] = "vtu",     [LAVES_FORMAT_GMSH22] = "gmsh22",
-    [LAVES_FORMAT_GMSH41] = "gmsh41", [LAVES_FORMAT_MEDIT] = "medit", [LAVES_FORMAT_TETGEN] = "tetgen",
-    [LAVES_FORMAT_STL] = "stl",       [LAVES_FORMAT_OBJ] = "obj",     [LAVES_FORMAT_PLY] = "ply",
-    [LAVES_FORMAT_OFF] = "off",
+    [LAVES_FORMAT_AUTO] = "auto",     [LAVES_FORMAT_VTU] = "vtu",       [LAVES_FORMAT_GMSH22] = "gmsh22",
+    [LAVES_FORMAT_GMSH41] = "gmsh41", [LAVES_FORMAT_MEDIT] = "medit",   [LAVES_FORMAT_TETGEN] = "tetgen",
+    [LAVES_FORMAT_VTKHDF] = "vtkhdf", [LAVES_FORMAT_VTK] = "vtk",       [LAVES_FORMAT_XDMF] = "xdmf",
+    [LAVES_FORMAT_EXODUS] = "exodus", [LAVES_FORMAT_ABAQUS] = "abaqus", [LAVES_FORMAT_NASTRAN] = "nastran",
+    [LAVES_FORMAT_NPZ] = "npz",       [LAVES_FORMAT_DMTET] = "dmtet",   [LAVES_FORMAT_STL] = "stl",
+    [LAVES_FORMAT_OBJ] = "obj",       [LAVES_FORMAT_PLY] = "ply",       [LAVES_FORMAT_OFF] = "off",
 };
 
 static const struct {
   const char *extension;
   laves_format format;
 } extensions[] = {
-    {"vtu", LAVES_FORMAT_VTU},     {"msh", LAVES_FORMAT_GMSH41}, {"mesh", LAVES_FORMAT_MEDIT},  {"meshb", LAVES_FORMAT_MEDIT},
-    {"node", LAVES_FORMAT_TETGEN}, {"ele", LAVES_FORMAT_TETGEN}, {"face", LAVES_FORMAT_TETGEN}, {"stl", LAVES_FORMAT_STL},
-    {"obj", LAVES_FORMAT_OBJ},     {"ply", LAVES_FORMAT_PLY},    {"off", LAVES_FORMAT_OFF},
+    {"vtu", LAVES_FORMAT_VTU},       {"msh", LAVES_FORMAT_GMSH41},  {"mesh", LAVES_FORMAT_MEDIT},  {"meshb", LAVES_FORMAT_MEDIT},
+    {"vtkhdf", LAVES_FORMAT_VTKHDF}, {"hdf", LAVES_FORMAT_VTKHDF},  {"vtk", LAVES_FORMAT_VTK},     {"xdmf", LAVES_FORMAT_XDMF},
+    {"xmf", LAVES_FORMAT_XDMF},      {"exo", LAVES_FORMAT_EXODUS},  {"ex2", LAVES_FORMAT_EXODUS},  {"e", LAVES_FORMAT_EXODUS},
+    {"inp", LAVES_FORMAT_ABAQUS},    {"bdf", LAVES_FORMAT_NASTRAN}, {"nas", LAVES_FORMAT_NASTRAN}, {"npz", LAVES_FORMAT_NPZ},
+    {"node", LAVES_FORMAT_TETGEN},   {"ele", LAVES_FORMAT_TETGEN},  {"face", LAVES_FORMAT_TETGEN}, {"stl", LAVES_FORMAT_STL},
+    {"obj", LAVES_FORMAT_OBJ},       {"ply", LAVES_FORMAT_PLY},     {"off", LAVES_FORMAT_OFF},
 };
 
 const char *laves_format_name(laves_format format) { return (unsigned)format < LAVES_FORMAT_COUNT ? names[format] : NULL; }
@@ -29,7 +34,18 @@ laves_format laves_format_from_name(const char *name) {
 }
 
 bool laves_format_streams(laves_format format) {
-  return format == LAVES_FORMAT_VTU || format == LAVES_FORMAT_GMSH22 || format == LAVES_FORMAT_GMSH41;
+  switch (format) {
+    case LAVES_FORMAT_VTU:
+    case LAVES_FORMAT_GMSH22:
+    case LAVES_FORMAT_GMSH41:
+    case LAVES_FORMAT_VTKHDF:
+    case LAVES_FORMAT_VTK:
+    case LAVES_FORMAT_XDMF:
+    case LAVES_FORMAT_NPZ:
+      return true;
+    default:
+      return false;
+  }
 }
 
 laves_format laves_format_from_path(const char *path) {

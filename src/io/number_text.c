@@ -113,6 +113,14 @@ static char *put_decimal(char *text, decimal d) {
   return laves__put_integer(end, point - 1);
 }
 
+/* The shortest decimal of a double above zero. */
+static decimal shortest_of(uint64_t fraction, int exponent) {
+  const uint64_t c = exponent ? fraction | UINT64_C(1) << 52 : fraction;
+  const int q = exponent ? exponent - 1075 : -1074;
+  const bool small_integer = q <= 0 && q > -53 && (c & ((UINT64_C(1) << -q) - 1)) == 0;
+  return small_integer ? (decimal){c >> -q, 0} : shortest(c, q, fraction == 0 && exponent > 1);
+}
+
 char *laves__put_double(char *text, double value) {
   uint64_t bits;
   memcpy(&bits, &value, sizeof bits);
@@ -126,8 +134,53 @@ char *laves__put_double(char *text, double value) {
     *text++ = '0';
     return text;
   }
-  const uint64_t c = exponent ? fraction | UINT64_C(1) << 52 : fraction;
-  const int q = exponent ? exponent - 1075 : -1074;
-  const bool small_integer = q <= 0 && q > -53 && (c & ((UINT64_C(1) << -q) - 1)) == 0;
-  return put_decimal(text, small_integer ? (decimal){c >> -q, 0} : shortest(c, q, fraction == 0 && exponent > 1));
+  return put_decimal(text, shortest_of(fraction, exponent));
+}
+
+/* ---- fields ---- */
+
+/* d with its last `count` digits rounded away. */
+static decimal rounded(decimal d, int count) {
+  uint64_t unit = 1;
+  for (int i = 0; i < count; i++) unit *= 10;
+  return (decimal){(d.digits + unit / 2) / unit, d.exponent + count};
+}
+
+/* Plain where the point is within or next to the digits, else with an exponent. */
+static char *put_field(char *text, decimal d) {
+  enum { PLAIN_MAX = 12 };
+  while (d.digits % 10 == 0) {
+    d.digits /= 10;
+    d.exponent++;
+  }
+  char digits[20];
+  const int count = digit_count(d.digits), point = count + d.exponent; /* value = 0.digits * 10^point */
+  put_digits(digits, d.digits, count);
+  const bool plain = point >= -2 && point <= PLAIN_MAX;
+  const int before = plain ? (point > 0 ? point : 0) : 1; /* digits, or zeros behind them, before the point */
+  for (int i = 0; i < before; i++) *text++ = i < count ? digits[i] : '0';
+  *text++ = '.';
+  for (int i = point; plain && i < 0; i++) *text++ = '0';
+  for (int i = before; i < count; i++) *text++ = digits[i];
+  if (plain) return text;
+  *text++ = 'E';
+  return laves__put_integer(text, point - 1);
+}
+
+char *laves__put_double_field(char *text, double value, int width) {
+  uint64_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  const uint64_t fraction = bits & ((UINT64_C(1) << 52) - 1);
+  const int exponent = (int)(bits >> 52 & 0x7ff);
+  const bool zero = exponent == 0 && fraction == 0, negative = bits >> 63 && !zero;
+  if (zero || exponent == 0x7ff) return (char *)memcpy(text, "0.", 2) + 2;
+  if (negative) *text++ = '-';
+  const decimal d = shortest_of(fraction, exponent);
+  for (int dropped = 0;; dropped++) {
+    char field[LAVES__DOUBLE_TEXT_MAX + 2];
+    const size_t length = (size_t)(put_field(field, rounded(d, dropped)) - field);
+    if (length + negative > (size_t)width) continue;
+    memcpy(text, field, length);
+    return text + length;
+  }
 }

@@ -15,5 +15,9 @@ extern const uint64_t laves__pow10_table[LAVES__POW10_LAST - LAVES__POW10_FIRST 
 char *laves__put_integer(char *text, int64_t value);
 /* "nan", "inf" and "-inf" for values that are not finite. */
 char *laves__put_double(char *text, double value);
+/* The same in at most `width` characters, 16 or more, for formats with fields: the shortest form where it fits, else rounded to
+ * as many digits as do. Always with a point and with 'E', as programs in Fortran want real numbers: "1.", ".5", "2.5E-9". For
+ * finite values; 0 for others. */
+char *laves__put_double_field(char *text, double value, int width);
 
 #endif

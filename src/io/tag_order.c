@@ -88,6 +88,10 @@ void laves__tag_order_free(laves_context *context, laves__tag_order *order) {
   memset(order, 0, sizeof *order);
 }
 
+int32_t laves__tag_number(const laves__tag_order *order, size_t i) {
+  return order->tags[0] > 0 ? order->tags[i] : (int32_t)i + 1;
+}
+
 static void make_printable(char *name) {
   for (char *c = name; *c; c++)
     if ((unsigned char)*c < ' ' || *c == '"') *c = '_';

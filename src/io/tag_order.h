@@ -18,6 +18,10 @@ bool laves__tag_order_make(laves_context *context, const int32_t *tags, size_t e
 void laves__tag_order_free(laves_context *context, laves__tag_order *order);
 static inline size_t laves__tag_order_item(const laves__tag_order *order, size_t i) { return order->order ? order->order[i] : i; }
 
+/* The number of tag i in formats that want positive ones: the tag itself, or, where a tag is zero or less, 1, 2, ... in ascending
+ * order. */
+int32_t laves__tag_number(const laves__tag_order *order, size_t i);
+
 /* One line for each name of a region (dimension 3) or tag (2) that the mesh has: `start`, number, name. For formats that have
  * comments but no names. */
 void laves__tag_comments(laves__output *out, const laves_mesh *mesh, int dimension, const char *start);

@@ -73,9 +73,7 @@ static void close_file(file *f) {
   for (int i = 0; i < 2; i++) laves__tag_order_free(f->out->context, &f->sets[i].order);
 }
 
-static int32_t physical_tag(const elements *e, size_t group) {
-  return e->order.tags[0] > 0 ? e->order.tags[group] : (int32_t)group + 1;
-}
+static int32_t physical_tag(const elements *e, size_t group) { return laves__tag_number(&e->order, group); }
 
 /* Corners of some elements in turn. A streamed mesh has one region, and its tets follow each other. */
 typedef struct corner_reader {

@@ -30,6 +30,27 @@ static void write_content(laves__output *out, const laves_mesh *mesh, const char
     case LAVES_FORMAT_MEDIT: /* programs tell the two apart by the extension */
       (has_extension(path, ".meshb") ? laves__write_medit_binary : laves__write_medit_text)(out, mesh);
       break;
+    case LAVES_FORMAT_VTKHDF:
+      laves__write_vtkhdf(out, mesh);
+      break;
+    case LAVES_FORMAT_VTK:
+      laves__write_vtk(out, mesh, ascii);
+      break;
+    case LAVES_FORMAT_EXODUS:
+      laves__write_exodus(out, mesh);
+      break;
+    case LAVES_FORMAT_ABAQUS:
+      laves__write_abaqus(out, mesh);
+      break;
+    case LAVES_FORMAT_NASTRAN:
+      laves__write_nastran(out, mesh);
+      break;
+    case LAVES_FORMAT_NPZ:
+      laves__write_npz(out, mesh);
+      break;
+    case LAVES_FORMAT_DMTET:
+      laves__write_dmtet(out, mesh);
+      break;
     case LAVES_FORMAT_STL:
       (ascii ? laves__write_stl_text : laves__write_stl_binary)(out, mesh);
       break;
@@ -87,6 +108,27 @@ static laves_result write_tetgen(laves_context *context, const laves_mesh *mesh,
   return result;
 }
 
+/* The XML, and the arrays beside it: both are complete before the first is renamed, and both are renamed or none. */
+static laves_result write_xdmf(laves_context *context, const laves_mesh *mesh, const char *path, laves_error *error) {
+  const char *dot = has_extension(path, ".xdmf") || has_extension(path, ".xmf") ? strrchr(path, '.') : path + strlen(path);
+  char data[PATH_MAX];
+  if (snprintf(data, sizeof data, "%.*s.h5", (int)(dot - path), path) >= (int)sizeof data)
+    return laves__fail(error, LAVES_ERROR_WRITE, "cannot write: the file name is longer than %d bytes", PATH_MAX - 1);
+  const char *slash = strrchr(data, '/');
+  laves__output outs[2];
+  laves_result result = laves__output_open(&outs[0], context, data);
+  if (result == LAVES_OK) laves__write_xdmf_data(&outs[0], mesh);
+  result = laves__output_complete(&outs[0]);
+  const int opened = result == LAVES_OK ? 2 : 1;
+  if (opened == 2) {
+    if (laves__output_open(&outs[1], context, path) == LAVES_OK) laves__write_xdmf(&outs[1], mesh, slash ? slash + 1 : data);
+    result = laves__output_complete(&outs[1]);
+  }
+  if (result == LAVES_OK) result = laves__output_publish_all(outs, 2);
+  for (int i = 0; i < opened; i++) finish(&outs[i], error);
+  return result;
+}
+
 static laves_result check_options(const laves_write_options *options, laves_error *error) {
   if (options->cookie != write_cookie)
     return laves__fail(error, LAVES_ERROR_OPTION, "the write options do not come from laves_write_options_default()");
@@ -104,13 +146,15 @@ laves_result laves_mesh_write(laves_context *context, const laves_mesh *mesh, co
   if (checked != LAVES_OK) return checked;
   const laves_format format = options->format == LAVES_FORMAT_AUTO ? laves_format_from_path(path) : options->format;
   if (format == LAVES_FORMAT_COUNT)
-    return laves__fail(error, LAVES_ERROR_OPTION,
-                       "the name '%s' does not say in which format to write; end it in .vtu, .msh, .mesh, .meshb, .node, .stl, "
-                       ".obj, .ply or .off, or name a format",
-                       path);
+    return laves__fail(
+        error, LAVES_ERROR_OPTION,
+        "the name '%s' does not say in which format to write; end it in .vtu, .msh, .mesh, .meshb, .node, .vtkhdf, .vtk, "
+        ".xdmf, .exo, .inp, .bdf, .npz, .stl, .obj, .ply or .off, or name a format",
+        path);
   const laves_result held = laves_format_streams(format) ? LAVES_OK : laves__mesh_require_arrays(mesh, "this format", error);
   if (held != LAVES_OK) return held;
   laves__progress_reset(context);
   if (format == LAVES_FORMAT_TETGEN) return write_tetgen(context, mesh, path, error);
+  if (format == LAVES_FORMAT_XDMF) return write_xdmf(context, mesh, path, error);
   return write_one(context, mesh, path, format, options, error);
 }

@@ -17,6 +17,16 @@ void laves__write_medit_binary(laves__output *out, const laves_mesh *mesh);
 void laves__write_tetgen_node(laves__output *out, const laves_mesh *mesh);
 void laves__write_tetgen_ele(laves__output *out, const laves_mesh *mesh);
 void laves__write_tetgen_face(laves__output *out, const laves_mesh *mesh);
+void laves__write_vtk(laves__output *out, const laves_mesh *mesh, bool ascii);
+void laves__write_abaqus(laves__output *out, const laves_mesh *mesh);
+void laves__write_nastran(laves__output *out, const laves_mesh *mesh);
+void laves__write_npz(laves__output *out, const laves_mesh *mesh);
+void laves__write_dmtet(laves__output *out, const laves_mesh *mesh);
+void laves__write_vtkhdf(laves__output *out, const laves_mesh *mesh);
+void laves__write_exodus(laves__output *out, const laves_mesh *mesh);
+/* An XDMF file and the HDF5 file beside it; `name` is that of the latter, without a folder. */
+void laves__write_xdmf(laves__output *out, const laves_mesh *mesh, const char *name);
+void laves__write_xdmf_data(laves__output *out, const laves_mesh *mesh);
 void laves__write_stl_text(laves__output *out, const laves_mesh *mesh);
 void laves__write_stl_binary(laves__output *out, const laves_mesh *mesh);
 void laves__write_obj(laves__output *out, const laves_mesh *mesh);

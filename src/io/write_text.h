@@ -26,4 +26,7 @@ static inline char *laves__put_indices(char *text, const int32_t *indices, int c
   return text;
 }
 
+/* Text of an attribute of XML: what would end it or begin markup is spelled out. */
+void laves__write_escaped(laves__output *out, const char *text);
+
 #endif

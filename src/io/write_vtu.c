@@ -4,8 +4,7 @@
  * Tetrahedra come first. When the mesh carries face tags or sources, its boundary triangles follow as cells of their own with the
  * tag as their "region", so that tags survive; without either the file holds tetrahedra only.
  *
- * VTK has no place for names of cells' numbers. Each name of a group becomes an array of the field data, with the pairs (number,
- * dimension) that have it: 3 for regions, 2 for tags. meshio knows its "field data" in this form from Gmsh's files.
+ * Names of groups are field data (io/mesh_cells.h).
  *
  * Binary arrays are appended as raw bytes behind the XML, each after a header of UInt64: its byte count, or for compressed
  * arrays the number of blocks, their size, the size of the last (0 when full) and every block's compressed size. The XML
@@ -14,12 +13,10 @@
 #include <string.h>
 #include <zlib.h>
 
+#include "io/mesh_cells.h"
 #include "io/write_mesh.h"
 #include "io/write_text.h"
 #include "io/zlib_memory.h"
-
-enum { CELL_TRIANGLE = 5, CELL_TET = 10 };
-enum { CLASS_TILE = 0, CLASS_LAYER = 1, CLASS_FACE = 2 };
 
 typedef struct grid {
   const laves_mesh *mesh;
@@ -28,28 +25,11 @@ typedef struct grid {
 
 /* ---- arrays, item by item; an item is one number, for points one coordinate ---- */
 
-static int64_t offset(const grid *g, size_t i) {
-  const size_t tets = g->mesh->tet_count;
-  return i < tets ? 4 * ((int64_t)i + 1) : 4 * (int64_t)tets + 3 * ((int64_t)(i - tets) + 1);
-}
-
-static int64_t type(const grid *g, size_t i) { return i < g->mesh->tet_count ? CELL_TET : CELL_TRIANGLE; }
-
-static int64_t region(const grid *g, size_t i) {
-  const size_t tets = g->mesh->tet_count;
-  if (i >= tets) return g->mesh->face_tags ? g->mesh->face_tags[i - tets] : 1;
-  return g->mesh->regions ? g->mesh->regions[i] : 1;
-}
-
-static int64_t class(const grid *g, size_t i) {
-  if (i >= g->mesh->tet_count) return CLASS_FACE;
-  return i < g->mesh->lattice_tet_count ? CLASS_TILE : CLASS_LAYER;
-}
-
-static int64_t source_face(const grid *g, size_t i) {
-  const size_t tets = g->mesh->tet_count;
-  return i < tets ? -1 : g->mesh->face_sources[i - tets];
-}
+static int64_t offset(const grid *g, size_t i) { return (int64_t)laves__cell_offset(g->mesh, i + 1); }
+static int64_t type(const grid *g, size_t i) { return laves__cell_type(g->mesh, i); }
+static int64_t region(const grid *g, size_t i) { return laves__cell_region(g->mesh, i); }
+static int64_t class(const grid *g, size_t i) { return laves__cell_class(g->mesh, i); }
+static int64_t source_face(const grid *g, size_t i) { return laves__cell_source(g->mesh, i); }
 
 typedef enum kind { FLOAT64, INT32, INT64, UINT8 } kind;
 static const char *const kind_names[] = {"Float64", "Int32", "Int64", "UInt8"};
@@ -305,58 +285,23 @@ static void write_element(laves__output *out, const array *a, form f, uint64_t *
   *position += f == RAW ? sizeof(uint64_t) + raw_bytes(a) : compressed_bytes(a);
 }
 
-/* Text of an attribute: what would end it or begin markup is spelled out. */
-static void write_escaped(laves__output *out, const char *text) {
-  for (; *text; text++) switch (*text) {
-      case '&':
-        laves__output_printf(out, "&amp;");
-        break;
-      case '<':
-        laves__output_printf(out, "&lt;");
-        break;
-      case '>':
-        laves__output_printf(out, "&gt;");
-        break;
-      case '"':
-        laves__output_printf(out, "&quot;");
-        break;
-      default:
-        laves__output_printf(out, "%c", (unsigned char)*text < ' ' ? '_' : *text);
-    }
-}
-
-/* Whether the file holds what the group names. */
-static bool is_told(const laves_mesh *mesh, const laves__group *group) {
-  return group->name[0] && (group->dimension == 3 ? mesh->regions != NULL : mesh->face_tags != NULL);
-}
-
-static bool is_first_of_its_name(const laves_mesh *mesh, size_t group) {
-  for (size_t i = 0; i < group; i++)
-    if (is_told(mesh, &mesh->groups[i]) && strcmp(mesh->groups[i].name, mesh->groups[group].name) == 0) return false;
-  return true;
-}
-
-/* One array for all groups of this name. */
-static void write_name(laves__output *out, const laves_mesh *mesh, const char *name) {
-  size_t count = 0;
-  for (size_t i = 0; i < mesh->group_count; i++) count += is_told(mesh, &mesh->groups[i]) && !strcmp(mesh->groups[i].name, name);
+/* One array for all groups of the name that group i has. */
+static void write_name(laves__output *out, const laves_mesh *mesh, size_t i) {
+  const size_t pairs = laves__cell_name_pairs(mesh, i);
+  if (pairs == 0) return;
   laves__output_printf(out, "      <DataArray type=\"Int32\" Name=\"");
-  write_escaped(out, name);
-  laves__output_printf(out, "\" NumberOfComponents=\"2\" NumberOfTuples=\"%zu\" format=\"ascii\">", count);
-  for (size_t i = 0; i < mesh->group_count; i++)
-    if (is_told(mesh, &mesh->groups[i]) && strcmp(mesh->groups[i].name, name) == 0)
-      laves__output_printf(out, " %ld %d", (long)mesh->groups[i].tag, mesh->groups[i].dimension);
+  laves__write_escaped(out, mesh->groups[i].name);
+  laves__output_printf(out, "\" NumberOfComponents=\"2\" NumberOfTuples=\"%zu\" format=\"ascii\">", pairs);
+  for (size_t j = i; j < mesh->group_count; j++)
+    if (laves__cell_same_name(mesh, i, j))
+      laves__output_printf(out, " %ld %d", (long)mesh->groups[j].tag, mesh->groups[j].dimension);
   laves__output_printf(out, " </DataArray>\n");
 }
 
 static void write_names(laves__output *out, const laves_mesh *mesh) {
-  enum { NAMES_MAX = 10000 }; /* looking for equal names is quadratic; nobody reads so many */
-  size_t told = 0;
-  for (size_t i = 0; i < mesh->group_count; i++) told += is_told(mesh, &mesh->groups[i]);
-  if (told == 0 || told > NAMES_MAX) return;
+  if (laves__cell_name_count(mesh) == 0) return;
   laves__output_printf(out, "    <FieldData>\n");
-  for (size_t i = 0; i < mesh->group_count; i++)
-    if (is_told(mesh, &mesh->groups[i]) && is_first_of_its_name(mesh, i)) write_name(out, mesh, mesh->groups[i].name);
+  for (size_t i = 0; i < mesh->group_count; i++) write_name(out, mesh, i);
   laves__output_printf(out, "    </FieldData>\n");
 }
 
@@ -410,7 +355,7 @@ static void compress_arrays(laves__output *out, array arrays[ARRAY_COUNT], int l
 
 void laves__write_vtu(laves__output *out, const laves_mesh *mesh, bool ascii, int compression_level) {
   const form f = ascii ? TEXT : compression_level > 0 ? COMPRESSED : RAW;
-  const size_t faces = mesh->face_tags || mesh->face_sources ? mesh->face_count : 0;
+  const size_t faces = laves__cell_faces(mesh);
   const grid g = {mesh, faces, mesh->tet_count + faces};
   array arrays[ARRAY_COUNT];
   describe_arrays(&g, arrays);

@@ -460,18 +460,28 @@ static laves_result read_mesh(laves_context *context, const job_place *place, co
   return result;
 }
 
-static const char *const tetgen_endings[] = {".node", ".ele", ".face"};
+/* Names that end in the first of these stand for several files. */
+static const char *const companions[][3] = {{".node", ".ele", ".face"}, {".xdmf", ".h5", NULL}};
 
-/* A name that ends in .node stands for three files. Takes what was written, and removes it. */
+static bool ends_in(const char *path, const char *ending) {
+  const size_t length = strlen(path), tail = strlen(ending);
+  return length > tail && strcmp(path + length - tail, ending) == 0;
+}
+
+static void take_and_remove(const char *path, job_outcome *out) {
+  take_file(out, path);
+  remove(path);
+}
+
+/* Takes what was written, and removes it. */
 static void take_written(const char *path, job_outcome *out) {
-  const size_t length = strlen(path);
-  const bool tetgen = length > 5 && strcmp(path + length - 5, ".node") == 0;
-  for (int i = 0; i < (tetgen ? 3 : 1); i++) {
-    char name[PATH_BYTES];
-    snprintf(name, sizeof name, "%.*s%s", (int)(tetgen ? length - 5 : length), path, tetgen ? tetgen_endings[i] : "");
-    take_file(out, name);
-    remove(name);
-  }
+  take_and_remove(path, out);
+  for (int kind = 0; kind < 2; kind++)
+    for (int i = 1; i < 3 && companions[kind][i] && ends_in(path, companions[kind][0]); i++) {
+      char name[PATH_BYTES];
+      snprintf(name, sizeof name, "%.*s%s", (int)(strlen(path) - strlen(companions[kind][0])), path, companions[kind][i]);
+      take_and_remove(name, out);
+    }
 }
 
 /* `what` is the file's name; an 'a' in front of it means text instead of binary, a 'c' compressed. */
@@ -535,6 +545,14 @@ const job jobs[] = {
     {"write Medit, text", write_mesh, "x.mesh"},
     {"write Medit, binary", write_mesh, "x.meshb"},
     {"write TetGen", write_mesh, "x.node"},
+    {"write VTKHDF", write_mesh, "x.vtkhdf"},
+    {"write legacy VTK, text", write_mesh, "a.vtk"},
+    {"write legacy VTK, binary", write_mesh, "b.vtk"},
+    {"write XDMF", write_mesh, "x.xdmf"},
+    {"write Exodus", write_mesh, "x.exo"},
+    {"write Abaqus", write_mesh, "x.inp"},
+    {"write Nastran", write_mesh, "x.bdf"},
+    {"write NumPy", write_mesh, "x.npz"},
     {"write STL, text", write_mesh, "a.stl"},
     {"write STL, binary", write_mesh, "b.stl"},
     {"write OBJ", write_mesh, "x.obj"},

@@ -15,9 +15,14 @@ static const struct {
     {"ascii22.msh", LAVES_FORMAT_GMSH22, true, 0},  {"binary41.msh", LAVES_FORMAT_GMSH41, false, 0},
     {"ascii41.msh", LAVES_FORMAT_GMSH41, true, 0},  {"text.mesh", LAVES_FORMAT_MEDIT, true, 0},
     {"binary.meshb", LAVES_FORMAT_MEDIT, false, 0}, {"tetgen.node", LAVES_FORMAT_TETGEN, true, 0},
-    {"binary.stl", LAVES_FORMAT_STL, false, 0},     {"ascii.stl", LAVES_FORMAT_STL, true, 0},
-    {"text.obj", LAVES_FORMAT_OBJ, true, 0},        {"binary.ply", LAVES_FORMAT_PLY, false, 0},
-    {"ascii.ply", LAVES_FORMAT_PLY, true, 0},       {"text.off", LAVES_FORMAT_OFF, true, 0},
+    {"mesh.vtkhdf", LAVES_FORMAT_VTKHDF, false, 0}, {"binary.vtk", LAVES_FORMAT_VTK, false, 0},
+    {"ascii.vtk", LAVES_FORMAT_VTK, true, 0},       {"mesh.xdmf", LAVES_FORMAT_XDMF, false, 0},
+    {"mesh.exo", LAVES_FORMAT_EXODUS, false, 0},    {"text.inp", LAVES_FORMAT_ABAQUS, true, 0},
+    {"text.bdf", LAVES_FORMAT_NASTRAN, true, 0},    {"mesh.npz", LAVES_FORMAT_NPZ, false, 0},
+    {"grid.npz", LAVES_FORMAT_DMTET, false, 0},     {"binary.stl", LAVES_FORMAT_STL, false, 0},
+    {"ascii.stl", LAVES_FORMAT_STL, true, 0},       {"text.obj", LAVES_FORMAT_OBJ, true, 0},
+    {"binary.ply", LAVES_FORMAT_PLY, false, 0},     {"ascii.ply", LAVES_FORMAT_PLY, true, 0},
+    {"text.off", LAVES_FORMAT_OFF, true, 0},
 };
 
 static int write_all(laves_context *context, const laves_mesh *mesh, const char *folder, const char *prefix) {

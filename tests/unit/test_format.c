@@ -28,6 +28,12 @@ static void test_extensions(void **state) {
   assert_int_equal(laves_format_from_path("mesh.MSH"), LAVES_FORMAT_GMSH41);
   assert_int_equal(laves_format_from_path("mesh.1.node"), LAVES_FORMAT_TETGEN);
   assert_int_equal(laves_format_from_path("mesh.meshb"), LAVES_FORMAT_MEDIT);
+  assert_int_equal(laves_format_from_path("mesh.vtk"), LAVES_FORMAT_VTK);
+  assert_int_equal(laves_format_from_path("mesh.hdf"), LAVES_FORMAT_VTKHDF);
+  assert_int_equal(laves_format_from_path("mesh.e"), LAVES_FORMAT_EXODUS);
+  assert_int_equal(laves_format_from_path("mesh.inp"), LAVES_FORMAT_ABAQUS);
+  assert_int_equal(laves_format_from_path("mesh.nas"), LAVES_FORMAT_NASTRAN);
+  assert_int_equal(laves_format_from_path("mesh.npz"), LAVES_FORMAT_NPZ);
   assert_int_equal(laves_format_from_path("mesh.off"), LAVES_FORMAT_OFF);
   assert_int_equal(laves_format_from_path("mesh"), LAVES_FORMAT_COUNT);
   assert_int_equal(laves_format_from_path("a.vtu/mesh"), LAVES_FORMAT_COUNT);

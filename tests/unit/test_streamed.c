@@ -186,7 +186,11 @@ static void files_are_the_same(void **state) {
                                               {.format = LAVES_FORMAT_GMSH41},
                                               {.format = LAVES_FORMAT_GMSH41, .ascii = true},
                                               {.format = LAVES_FORMAT_GMSH22},
-                                              {.format = LAVES_FORMAT_GMSH22, .ascii = true}};
+                                              {.format = LAVES_FORMAT_GMSH22, .ascii = true},
+                                              {.format = LAVES_FORMAT_VTKHDF},
+                                              {.format = LAVES_FORMAT_VTK},
+                                              {.format = LAVES_FORMAT_VTK, .ascii = true},
+                                              {.format = LAVES_FORMAT_NPZ}};
   for (int i = 0; i < SOLIDS; i++) {
     pair p = make_pair(&solids[i], 3);
     for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
@@ -207,6 +211,28 @@ static void files_are_the_same(void **state) {
       free(bytes[0]);
       free(bytes[1]);
     }
+    free_pair(&p);
+  }
+}
+
+/* XDMF's arrays; the XML names their file. */
+static void files_of_arrays_are_the_same(void **state) {
+  (void)state;
+  for (int i = 1; i < 3; i++) { /* without and with tags */
+    pair p = make_pair(&solids[i], 2);
+    size_t size[2];
+    char *bytes[2];
+    for (int j = 0; j < 2; j++) {
+      char path[FIXTURE_FOLDER_MAX + 20];
+      snprintf(path, sizeof path, "%s/mesh%d.xdmf", folder, j);
+      assert_int_equal(laves_mesh_write(p.context, j ? p.streamed : p.whole, path, NULL, NULL), LAVES_OK);
+      snprintf(path, sizeof path, "%s/mesh%d.h5", folder, j);
+      bytes[j] = read_file(path, &size[j]);
+    }
+    assert_int_equal(size[0], size[1]);
+    assert_memory_equal(bytes[0], bytes[1], size[0]);
+    free(bytes[0]);
+    free(bytes[1]);
     free_pair(&p);
   }
 }
@@ -290,10 +316,15 @@ static void memory_goes_with_the_surface(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(same_as_in_memory),        cmocka_unit_test(any_range_may_be_read),
-      cmocka_unit_test(ranges_end_with_the_mesh), cmocka_unit_test(files_are_the_same),
-      cmocka_unit_test(other_formats_refuse),     cmocka_unit_test(checks_refuse),
-      cmocka_unit_test(some_wishes_need_memory),  cmocka_unit_test(memory_goes_with_the_surface),
+      cmocka_unit_test(same_as_in_memory),
+      cmocka_unit_test(any_range_may_be_read),
+      cmocka_unit_test(ranges_end_with_the_mesh),
+      cmocka_unit_test(files_are_the_same),
+      cmocka_unit_test(files_of_arrays_are_the_same),
+      cmocka_unit_test(other_formats_refuse),
+      cmocka_unit_test(checks_refuse),
+      cmocka_unit_test(some_wishes_need_memory),
+      cmocka_unit_test(memory_goes_with_the_surface),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }
