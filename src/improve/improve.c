@@ -10,7 +10,9 @@
  * First passes only smooth; when that no longer helps, contraction joins in; the few that are still clearly outside are
  * treated once more with more smoothing around each contraction. On a graded background flips join in from the first. */
 #include <stdlib.h>
+#include <stdio.h>
 
+#include "improve/blocks.h"
 #include "improve/contract.h"
 #include "improve/flip.h"
 #include "improve/peel.h"
@@ -75,12 +77,14 @@ typedef struct patient {
 
 typedef struct work {
   const laves__frame *frame;
+  laves__blocks blocks; /* where the boundary is given */
   laves__measure measure;
   double target;
   laves__layer *layer;
   laves__journal *journal; /* one for each worker */
   patient *item;           /* by level, then colour, then block, then quality */
   size_t count, capacity;
+  size_t bad;    /* beside them those that can't be worked on in this pass */
   size_t *block; /* first item of each block, and the end */
   size_t block_count, block_capacity;
   double progress; /* share of the first bad tets that are cured, for the caller's eyes */
@@ -133,6 +137,11 @@ static int level_of(const laves__layer *layer, int32_t tet) {
   return frexp(largest, &level) == 0.5 ? level - 1 : level;
 }
 
+/* In a given mesh blocks are independent: all are of one colour. */
+static patient admit_given(const laves__blocks *blocks, const laves__layer *layer, int32_t tet) {
+  return (patient){.block = {laves__blocks_of(blocks, layer, tet)}, .tet = tet, .quality = layer->quality[tet]};
+}
+
 static patient admit(const laves__layer *layer, int32_t tet) {
   laves__vec3 p[4];
   laves__layer_points(layer, tet, p);
@@ -164,11 +173,13 @@ static int by_level_colour_block_quality(const void *left, const void *right) {
 
 /* The bad tets of the layer, in order, and where their blocks begin; false when memory is short. */
 static bool admit_all(work *w) {
-  w->count = w->block_count = 0;
+  w->count = w->block_count = w->bad = 0;
   for (size_t t = 0; t < w->layer->tet_count; t++) {
     if (!is_bad(w, (int32_t)t)) continue;
     if (!laves__grow(w->layer->context, &w->item, &w->capacity, w->count + 1, sizeof *w->item)) return false;
-    w->item[w->count++] = admit(w->layer, (int32_t)t);
+    const patient item = w->layer->patch ? admit_given(&w->blocks, w->layer, (int32_t)t) : admit(w->layer, (int32_t)t);
+    w->bad++;
+    if (item.block[0] >= 0 || !w->layer->patch) w->item[w->count++] = item;
   }
   if (w->count) qsort(w->item, w->count, sizeof *w->item, by_level_colour_block_quality);
   for (size_t i = 0; i <= w->count; i++) {
@@ -278,11 +289,16 @@ static void mend_blocks(void *user, size_t begin, size_t end, int worker) {
 
 /* One pass over the bad tets; how many there were goes to *before. */
 static laves_result run_pass(work *w, size_t *before, laves_error *error) {
+  if (w->layer->patch) {
+    const laves_result result = laves__blocks_shift(&w->blocks, w->layer, error);
+    if (result != LAVES_OK) return result;
+  }
   if (!admit_all(w)) return laves__fail_memory(w->layer->context, error);
   collect_spare(w);
-  *before = w->count;
+  *before = w->bad;
   if (w->first_count == 0) w->first_count = w->count;
   if (w->count) w->progress = fmax(w->progress, 1 - (double)w->count / (double)w->first_count);
+  if (getenv("TR")) { double ws=1e9; size_t h[8]={0}; for (size_t t=0;t<w->layer->tet_count;t++) if (w->layer->tet[t][0]>=0){ double q=w->layer->quality[t]; if(q<ws) ws=q; int i=(int)(q*5); if(i<0)i=0; if(i<6)h[i]++;} fprintf(stderr,"pass rounds %d admit %.2f bad %zu worst %.3f hist<.2 %zu .4 %zu .6 %zu .8 %zu 1 %zu cpu %.3f\n",w->rounds,w->admit,w->bad,ws,h[0],h[1],h[2],h[3],h[4],laves__cpu_seconds()); }
   for (size_t first = 0; first < w->block_count;) {
     size_t end = first + 1;
     while (end < w->block_count && same_colour(&w->item[w->block[end]], &w->item[w->block[first]])) end++;
@@ -399,11 +415,28 @@ static laves_result mend_graded(work *w, laves_error *error) {
   return result;
 }
 
+/* The mesh of another program. */
+static laves_result mend_given(work *w, laves_error *error) {
+  static const struct {
+    int rounds, passes;
+    double admit;
+  } steps[] = {{0, 2, 1}, {3, 5, 0.6}, {3, 4, 0.8}, {0, 1, 1}, {3, 5, 0.8}};
+  laves_result result = LAVES_OK;
+  for (size_t i = 0; i < LAVES__COUNT_OF(steps) && result == LAVES_OK; i++) {
+    w->rounds = steps[i].rounds;
+    w->admit = steps[i].admit;
+    forget(w);
+    result = run_passes(w, steps[i].passes, 1, error);
+  }
+  return result;
+}
+
 /* Creases sharper than the window, and a little more, fix the angle of a tet that fills them alone. */
 static void leave_out_sharp(work *w, const laves__window *window) {
   static const double margin = 2; /* degrees */
-  const laves__features *f = w->layer->hold ? w->frame->features : NULL;
+  const laves__features *f = w->layer->hold && !w->layer->patch ? w->frame->features : NULL;
   w->measure.sharper_than = window->min_dihedral + margin;
+  if (w->layer->patch) w->measure.sharp_cosine = cos(w->measure.sharper_than * (3.14159265358979323846 / 180));
   for (size_t i = 0; f && i < f->crease_count; i++)
     if (f->crease[i].least_angle < w->measure.sharper_than) w->measure.sharp = f;
 }
@@ -453,6 +486,7 @@ static laves_result rescue(work *w, const laves__window *window, laves_error *er
 
 /* The schedule for what the layer is. */
 static laves_result mend_all(work *w, const laves__window *window, laves_error *error) {
+  if (w->layer->patch) return mend_given(w, error);
   if (window->rescue_min > 0) return rescue(w, window, error);
   if (window->again) return mend_again(w, error);
   const laves_result result = w->layer->hold ? bring_home(w, error) : LAVES_OK;
@@ -492,12 +526,15 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   for (size_t t = 0; t < layer->tet_count; t++) w.given_up[t] = w.stuck[t] = HUGE_VAL;
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
   if (!laves__parallel_for(context, NULL, layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
-  if (result == LAVES_OK && !window->again && window->rescue_min == 0)
+  if (layer->patch && !laves__blocks_begin(layer, &w.blocks)) result = laves__fail_memory(context, error);
+  if (result == LAVES_OK && !layer->patch && !window->again && window->rescue_min == 0)
     result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
   if (result == LAVES_OK) result = mend_all(&w, window, error);
-  if (result == LAVES_OK) settle_all(&w, settle_floor);
+  if (result == LAVES_OK && !layer->patch) settle_all(&w, settle_floor);
+  if (result == LAVES_OK && layer->patch) result = laves__blocks_end(&w.blocks, layer, error);
   if (result == LAVES_OK && short_of_memory(&w, workers)) result = laves__fail_memory(context, error);
 cleanup:
+  laves__blocks_free(&w.blocks);
   for (int i = 0; w.journal && i < workers; i++) laves__journal_free(&w.journal[i]);
   laves__free(context, w.spare_vertex, extra, sizeof *w.spare_vertex);
   laves__free(context, w.spare, layer->tet_count, sizeof *w.spare);
