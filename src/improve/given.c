@@ -1,10 +1,15 @@
-/* Patches are found by union and find over the edges of the boundary's faces; then each vertex counts the creases that end at
- * it. Everything is decided from the mesh alone, in a fixed order. */
+/* Patches grow from the largest faces over edges to what is in the same plane; then each vertex counts the creases that end at it.
+ * Everything is decided from the mesh alone, in a fixed order.
+ *
+ * Within a tolerance: all faces of a patch are within half of it of the patch's plane, in which its inner vertices move; its border
+ * stays. So no face that comes to the patch is further from one of the old ones than the tolerance. Borders count as
+ * straight only where they are, to rounding: there nothing bounds how much several such steps would add up to. */
 #include "improve/given.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "mesh/face_match.h"
 
 /* Provisional patches: of the boundary's faces; and, less the tet beyond, of those between regions. */
@@ -30,6 +35,9 @@ typedef struct meeting {
   bool forked;               /* they are not the sides of one crease */
 } meeting;
 
+/* Of the diagonal of the mesh's box: what the rounding of points that other programs put in a plane comes to, and more. */
+static const double rounding_share = 1e-10;
+
 typedef struct work {
   laves_context *context;
   const laves_mesh *mesh;
@@ -40,7 +48,9 @@ typedef struct work {
   given_edge *edge;
   size_t edge_count;
   meeting *meeting;
-  double flatness; /* units of the layer */
+  double flatness; /* how far from its plane a patch may be, units of the layer */
+  double rounding; /* the same of straight lines, whatever is tolerated */
+  laves__vec3 *plane; /* [patch_count] normals */
 } work;
 
 /* ---- which faces are given ---- */
@@ -119,49 +129,103 @@ static laves__vec3 face_normal(const work *w, const given_face *f) {
   return v3_unit(v3_cross(v3_sub(p[f->corner[1]], p[f->corner[0]]), v3_sub(p[f->corner[2]], p[f->corner[0]])));
 }
 
+typedef struct growth {
+  uint64_t *order, *scratch; /* faces, the largest first */
+  uint32_t (*across)[3];     /* the face that a patch may go on to, at each edge of a face; UINT32_MAX: none */
+  uint32_t *front;
+} growth;
+
 static bool corners_in_plane(const work *w, const given_face *f, laves__vec3 normal, laves__vec3 through) {
   for (int i = 0; i < 3; i++)
     if (!(fabs(v3_dot(normal, v3_sub(w->layer->position[f->corner[i]], through))) <= w->flatness)) return false;
   return true;
 }
 
-/* Whether two faces are one flat piece of the boundary. */
-static bool same_plane(const work *w, const given_face *f, const given_face *g) {
-  if (f->tag != g->tag || f->region[1] != g->region[1] || f->region[0] != g->region[0]) return false;
-  const laves__vec3 nf = face_normal(w, f), ng = face_normal(w, g);
-  return v3_dot(nf, ng) > 0.5 && corners_in_plane(w, g, nf, w->layer->position[f->corner[0]]) &&
-         corners_in_plane(w, f, ng, w->layer->position[g->corner[0]]);
+/* Whether two neighbours have the same on both sides, and one tag. */
+static bool same_kind(const given_face *f, const given_face *g) {
+  return f->tag == g->tag && f->region[0] == g->region[0] && f->region[1] == g->region[1];
 }
 
-static uint32_t root_of(uint32_t *parent, uint32_t f) {
-  while (parent[f] != f) f = parent[f] = parent[parent[f]];
-  return f;
-}
-
-/* Whether a patch goes on across the edge whose entries are [first, end). */
-static bool is_flat(const work *w, size_t first, size_t end) {
-  return end - first == 2 && same_plane(w, &w->face[w->edge[first].face], &w->face[w->edge[first + 1].face]);
-}
-
-/* Joins faces in one plane, and numbers the patches by their first faces. */
-static bool find_patches(work *w, bool fixed) {
-  uint32_t *parent = laves__alloc(w->context, w->face_count, sizeof *parent);
-  if (!parent) return false;
-  for (size_t f = 0; f < w->face_count; f++) parent[f] = (uint32_t)f;
-  for (size_t first = 0, end; first < w->edge_count && !fixed; first = end) {
+static void find_across(const work *w, growth *g) {
+  for (size_t f = 0; f < w->face_count; f++) g->across[f][0] = g->across[f][1] = g->across[f][2] = UINT32_MAX;
+  for (size_t first = 0, end; first < w->edge_count; first = end) {
     end = edge_end(w, first);
-    if (!is_flat(w, first, end)) continue;
-    const uint32_t a = root_of(parent, w->edge[first].face), b = root_of(parent, w->edge[first + 1].face);
-    parent[a > b ? a : b] = a < b ? a : b;
+    if (end - first != 2) continue;
+    for (size_t i = 0; i < 2; i++) {
+      const uint32_t f = w->edge[first + i].face, beyond = w->edge[first + 1 - i].face;
+      const int32_t *c = w->face[f].corner;
+      for (int k = 0; k < 3; k++)
+        if (c[k] != w->edge[first].low && c[k] != w->edge[first].high) g->across[f][k] = beyond;
+    }
   }
+}
+
+/* Doubled areas, falling; equal ones by index. */
+static void order_faces(const work *w, growth *g) {
+  const laves__vec3 *p = w->layer->position;
+  for (size_t f = 0; f < w->face_count; f++) {
+    const int32_t *c = w->face[f].corner;
+    const double area = v3_norm(v3_cross(v3_sub(p[c[1]], p[c[0]]), v3_sub(p[c[2]], p[c[0]])));
+    g->order[f] = laves__sort_key(1 / (area + 1e-30), (uint32_t)f);
+  }
+  laves__sort_u64(g->order, g->scratch, w->face_count);
+}
+
+/* All that can be reached from a face in its plane. */
+static void grow_patch(work *w, growth *g, uint32_t seed, int32_t patch) {
+  static const double most_turned = 0.5; /* cosine: folds are no plane */
+  const laves__vec3 normal = face_normal(w, &w->face[seed]), through = w->layer->position[w->face[seed].corner[0]];
+  w->face[seed].patch = patch;
+  w->plane[patch] = normal;
+  size_t count = 0;
+  g->front[count++] = seed;
+  while (count > 0) {
+    const uint32_t f = g->front[--count];
+    for (int k = 0; k < 3; k++) {
+      const uint32_t next = g->across[f][k];
+      if (next == UINT32_MAX) continue;
+      given_face *n = &w->face[next];
+      if (n->patch != LAVES__NO_PATCH || !same_kind(&w->face[f], n) || !corners_in_plane(w, n, normal, through)) continue;
+      if (!(v3_dot(face_normal(w, n), normal) > most_turned)) continue;
+      n->patch = patch;
+      g->front[count++] = next;
+    }
+  }
+}
+
+static bool allocate_growth(const work *w, growth *g) {
+  const size_t n = w->face_count;
+  *g = (growth){.order = laves__alloc(w->context, n, sizeof *g->order),
+                .scratch = laves__alloc(w->context, n, sizeof *g->scratch),
+                .across = laves__alloc(w->context, n, sizeof *g->across),
+                .front = laves__alloc(w->context, n, sizeof *g->front)};
+  return g->order && g->scratch && g->across && g->front;
+}
+
+/* `fixed`: each face is a patch by itself. */
+static bool find_patches(work *w, bool fixed) {
+  growth g;
   laves__given *given = w->given;
-  for (size_t f = 0; f < w->face_count; f++)
-    if (parent[f] == f) w->face[f].patch = (int32_t)given->patch_count++;
-  for (size_t f = 0; f < w->face_count; f++) w->face[f].patch = w->face[root_of(parent, (uint32_t)f)].patch;
-  laves__free(w->context, parent, w->face_count, sizeof *parent);
+  const size_t n = w->face_count;
+  w->plane = laves__alloc(w->context, n, sizeof *w->plane);
+  const bool memory = allocate_growth(w, &g) && w->plane;
+  if (memory) {
+    find_across(w, &g);
+    order_faces(w, &g);
+    for (size_t f = 0; f < n && fixed; f++) g.across[f][0] = g.across[f][1] = g.across[f][2] = UINT32_MAX;
+    for (size_t i = 0; i < n; i++) {
+      const uint32_t seed = (uint32_t)g.order[i];
+      if (w->face[seed].patch == LAVES__NO_PATCH) grow_patch(w, &g, seed, (int32_t)given->patch_count++);
+    }
+  }
+  laves__free(w->context, g.order, n, sizeof *g.order);
+  laves__free(w->context, g.scratch, n, sizeof *g.scratch);
+  laves__free(w->context, g.across, n, sizeof *g.across);
+  laves__free(w->context, g.front, n, sizeof *g.front);
+  if (!memory) return false;
   given->patch_tag = laves__alloc(w->context, given->patch_count, sizeof *given->patch_tag);
   if (!given->patch_tag) return false;
-  for (size_t f = 0; f < w->face_count; f++) given->patch_tag[w->face[f].patch] = w->face[f].tag;
+  for (size_t f = 0; f < n; f++) given->patch_tag[w->face[f].patch] = w->face[f].tag;
   return true;
 }
 
@@ -221,7 +285,7 @@ static bool is_straight(const work *w, int32_t v, laves__vec3 *tangent) {
   const laves__vec3 a = p[w->meeting[v].other[0]], b = p[w->meeting[v].other[1]];
   *tangent = v3_unit(v3_sub(b, a));
   const laves__vec3 from = v3_sub(p[v], a), aside = v3_mad(from, *tangent, -v3_dot(from, *tangent));
-  return v3_norm(aside) <= w->flatness && v3_dot(v3_sub(p[v], a), v3_sub(b, p[v])) > 0;
+  return v3_norm(aside) <= w->rounding && v3_dot(v3_sub(p[v], a), v3_sub(b, p[v])) > 0;
 }
 
 /* First what creases say; then faces have a last word, for a vertex may have a fan of faces without a crease beside. */
@@ -239,7 +303,7 @@ static void hold_vertices(work *w, bool fixed) {
         if (m->creases == 0) {
           m->patch[0] = m->patch[1] = patch;
           hold->kind = LAVES__HOLD_PATCH;
-          layer->normal[v] = face_normal(w, &w->face[i]);
+          layer->normal[v] = w->plane[patch];
         } else if (m->creases == 2 && is_straight(w, v, &layer->normal[v])) {
           hold->kind = LAVES__HOLD_CREASE;
         }
@@ -292,6 +356,12 @@ static laves__vec3 layer_position(const laves__given *given, size_t v) {
   return v3_scale(v3_sub(given->mesh->points[v], given->centre), 1 / given->size);
 }
 
+static laves__box3 box_of(const laves_mesh *mesh) {
+  laves__box3 box = box3_empty();
+  for (size_t v = 0; v < mesh->vertex_count; v++) box = box3_add(box, mesh->points[v]);
+  return box;
+}
+
 static laves_result fill_layer(work *w, laves_error *error) {
   const laves_mesh *mesh = w->mesh;
   laves__layer *layer = w->layer;
@@ -309,9 +379,7 @@ static laves_result fill_layer(work *w, laves_error *error) {
     layer->quality[t] = 0;
     for (int k = 0; k < 4; k++) layer->patch[t][k] = LAVES__NO_PATCH;
   }
-  laves__box3 box = box3_empty();
-  for (size_t v = 0; v < mesh->vertex_count; v++) box = box3_add(box, mesh->points[v]);
-  w->given->centre = v3_lerp(box.lower, box.upper, 0.5);
+  w->given->centre = box3_centre(box_of(mesh));
   find_sizes(w);
   for (size_t v = 0; v < mesh->vertex_count; v++) {
     layer->position[v] = layer_position(w->given, v);
@@ -332,13 +400,14 @@ static bool find_holds(work *w, bool fixed) {
   return true;
 }
 
-laves_result laves__given_layer(laves_context *context, const laves_mesh *mesh, double flatness, bool fixed, laves__given *given,
+laves_result laves__given_layer(laves_context *context, const laves_mesh *mesh, double tolerance, bool fixed, laves__given *given,
                                 laves__layer *layer, laves_error *error) {
   work w = {.context = context, .mesh = mesh, .given = given, .layer = layer};
   memset(layer, 0, sizeof *layer);
   *given = (laves__given){.context = context, .mesh = mesh};
   laves_result result = fill_layer(&w, error);
-  w.flatness = flatness / given->size;
+  w.rounding = rounding_share * box3_diagonal(box_of(mesh)) / given->size;
+  w.flatness = fmax(0.5 * tolerance / given->size, w.rounding);
   if (result == LAVES_OK)
     result = laves__match_faces(context, "boundary", (const int32_t(*)[4])layer->tet, layer->tet_count, layer->vertex_count,
                                 mark_group, &w, error);
@@ -347,6 +416,7 @@ laves_result laves__given_layer(laves_context *context, const laves_mesh *mesh, 
   if (result == LAVES_OK && laves__is_cancelled(context)) result = laves__fail_cancelled(error);
   laves__free(context, w.face, w.face_capacity, sizeof *w.face);
   laves__free(context, w.edge, w.edge_count, sizeof *w.edge);
+  laves__free(context, w.plane, w.face_count, sizeof *w.plane);
   laves__free(context, w.meeting, layer->vertex_count, sizeof *w.meeting);
   return result;
 }

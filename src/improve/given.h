@@ -27,10 +27,10 @@ typedef struct laves__given {
   double sharpest;                                      /* least angle between patches inside one region, degrees; 180: there is none */
 } laves__given;
 
-/* The layer of a mesh that is valid. Two faces are in one plane when they are within `flatness` of it, units of the mesh.
+/* The layer of a mesh that is valid. The boundary keeps its place within `tolerance`, units of the mesh; 0: but for rounding.
  * `fixed`: the vertices and edges of the boundary stay as they are, too.
  * LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED; free both whatever is returned. */
-laves_result laves__given_layer(laves_context *context, const laves_mesh *mesh, double flatness, bool fixed, laves__given *given,
+laves_result laves__given_layer(laves_context *context, const laves_mesh *mesh, double tolerance, bool fixed, laves__given *given,
                                 laves__layer *layer, laves_error *error);
 /* The mesh of a layer: vertices and tets in the layer's order, tags and names as before. Vertices that did not move have the
  * coordinates that they had, bit for bit. LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */

@@ -10,7 +10,6 @@
  * First passes only smooth; when that no longer helps, contraction joins in; the few that are still clearly outside are
  * treated once more with more smoothing around each contraction. On a graded background flips join in from the first. */
 #include <stdlib.h>
-#include <stdio.h>
 
 #include "improve/blocks.h"
 #include "improve/contract.h"
@@ -97,6 +96,8 @@ typedef struct work {
   double *stuck;     /* [tet_count] surroundings in which smoothing ended */
   double *given_up;  /* [tet_count] surroundings in which the last full treatment failed */
   double admit;      /* tets below this quality are worked on */
+  size_t passes_left; /* that are allowed */
+  double deadline;    /* wall seconds; 0: none */
   double worthwhile; /* share of them that a pass must cure to be followed by its like */
   bool thin;         /* tets that span a wall are good enough at wall_admit */
   int rounds;        /* of smoothing around a contraction; 0: smoothing only */
@@ -267,6 +268,8 @@ static void collect_spare(work *w) {
     if (w->layer->star[v].count == 0) w->spare_vertex[w->spare_vertex_count++] = (int32_t)v;
 }
 
+static bool is_late(const work *w) { return w->deadline > 0 && laves__wall_seconds() > w->deadline; }
+
 typedef struct colour_range {
   work *w;
   size_t first_block;
@@ -282,6 +285,7 @@ static void mend_blocks(void *user, size_t begin, size_t end, int worker) {
     for (size_t i = w->block[b]; i < w->block[b + 1]; i++) {
       if (laves__is_cancelled(w->layer->context)) return;
       if (worker == 0 && laves__cancelled(w->layer->context, "improve", w->progress)) return;
+      if (is_late(w)) return;
       if (is_bad(w, w->item[i].tet)) mend(w, w->item[i].tet, &slots, &vertices, &w->journal[worker]);
     }
   }
@@ -298,7 +302,6 @@ static laves_result run_pass(work *w, size_t *before, laves_error *error) {
   *before = w->bad;
   if (w->first_count == 0) w->first_count = w->count;
   if (w->count) w->progress = fmax(w->progress, 1 - (double)w->count / (double)w->first_count);
-  if (getenv("TR")) { double ws=1e9; size_t h[8]={0}; for (size_t t=0;t<w->layer->tet_count;t++) if (w->layer->tet[t][0]>=0){ double q=w->layer->quality[t]; if(q<ws) ws=q; int i=(int)(q*5); if(i<0)i=0; if(i<6)h[i]++;} fprintf(stderr,"pass rounds %d admit %.2f bad %zu worst %.3f hist<.2 %zu .4 %zu .6 %zu .8 %zu 1 %zu cpu %.3f\n",w->rounds,w->admit,w->bad,ws,h[0],h[1],h[2],h[3],h[4],laves__cpu_seconds()); }
   for (size_t first = 0; first < w->block_count;) {
     size_t end = first + 1;
     while (end < w->block_count && same_colour(&w->item[w->block[end]], &w->item[w->block[first]])) end++;
@@ -315,6 +318,8 @@ static laves_result run_passes(work *w, int passes, int patience, laves_error *e
   size_t best = SIZE_MAX;
   for (int pass = 0, idle = 0; pass < passes && idle < patience; pass++) {
     size_t before = 0;
+    if (w->passes_left == 0 || is_late(w)) return LAVES_OK;
+    w->passes_left--;
     const laves_result result = run_pass(w, &before, error);
     if (result != LAVES_OK || before == 0) return result;
     idle = (double)before > (1 - w->worthwhile) * (double)best ? idle + 1 : 0;
@@ -420,7 +425,7 @@ static laves_result mend_given(work *w, laves_error *error) {
   static const struct {
     int rounds, passes;
     double admit;
-  } steps[] = {{0, 2, 1}, {3, 5, 0.6}, {3, 4, 0.8}, {0, 1, 1}, {3, 5, 0.8}};
+  } steps[] = {{0, 2, 1}, {3, 4, 0.6}, {3, 4, 0.7}, {3, 5, 0.8}, {3, 3, 0.9}, {3, 5, 0.8}};
   laves_result result = LAVES_OK;
   for (size_t i = 0; i < LAVES__COUNT_OF(steps) && result == LAVES_OK; i++) {
     w->rounds = steps[i].rounds;
@@ -503,8 +508,14 @@ static bool short_of_memory(const work *w, int workers) {
 
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {
   laves_context *context = layer->context;
-  work w = {
-      .frame = frame, .measure = laves__measure_of(window), .target = 1, .admit = 1, .worthwhile = worthwhile, .layer = layer};
+  work w = {.frame = frame,
+            .measure = laves__measure_of(window),
+            .target = 1,
+            .admit = 1,
+            .worthwhile = worthwhile,
+            .passes_left = window->passes > 0 ? window->passes : SIZE_MAX,
+            .deadline = window->deadline,
+            .layer = layer};
   leave_out_sharp(&w, window);
   const int workers = laves__workers(context);
   laves_result result = LAVES_OK;
