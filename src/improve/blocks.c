@@ -4,12 +4,13 @@
 #include <string.h>
 
 /* Vertices in a block of a mesh that fills its box: fewer would leave too many standing still, more too little to share. */
-static const double block_vertices = 6000;
-enum { PER_AXIS_MAX = 500, STANDS = LAVES__DEPTH_MAX };
+static const double usual_vertices = 6000;
+enum { PER_AXIS_MAX = 500, STANDS = LAVES__DEPTH_MAX, TURNS = 4 };
 
 static double cube(int n) { return (double)n * n * n; }
 
-bool laves__blocks_begin(laves__layer *layer, laves__blocks *b) {
+bool laves__blocks_begin(laves__layer *layer, size_t least, laves__blocks *b) {
+  const double block_vertices = least > 0 ? (double)least : usual_vertices;
   laves__box3 box = box3_empty();
   size_t count = 0;
   *b = (laves__blocks){.context = layer->context, .capacity = layer->vertex_count};
@@ -32,7 +33,8 @@ bool laves__blocks_begin(laves__layer *layer, laves__blocks *b) {
 static int32_t along(double x, double lower, double side, double shift) { return (int32_t)floor((x - lower) / side + shift); }
 
 static void find_blocks(laves__blocks *b, const laves__layer *layer) {
-  const double shift = b->pass % 2 ? 0.5 : 0;
+  static const double shifts[TURNS] = {0, 0.5, 0.25, 0.75}; /* of a side, in all axes */
+  const double shift = shifts[b->pass % TURNS];
   const int32_t stride = b->per_axis + 2;
   for (size_t v = 0; v < layer->vertex_count; v++) {
     const laves__vec3 p = layer->position[v];
@@ -54,6 +56,8 @@ static void stand(const laves__blocks *b, laves__layer *layer) {
     for (int k = 0; k < 4; k++) layer->depth[v[k]] = STANDS;
   }
 }
+
+int laves__blocks_turns(const laves__blocks *b) { return b->per_axis > 1 ? TURNS : 1; }
 
 laves_result laves__blocks_end(laves__blocks *b, laves__layer *layer, laves_error *error) {
   if (b->pass == 0 || b->per_axis == 1) return LAVES_OK;

@@ -2,7 +2,8 @@
  *
  * Tets of other programs may be of any length, so no distance keeps what is done in one block out of sight of the next. Instead the
  * vertices that have a neighbour in another block stand still, and so all that is read and changed in a block is its own, or still.
- * From one pass to the next the blocks are shifted by half, so that each vertex moves in one of any two. */
+ * From one turn to the next the blocks are shifted by a quarter of their side in all axes: each border plane of a block is near a
+ * vertex in one of four turns at most, and there are three axes, so that each vertex moves in one of any four. */
 #ifndef LAVES_IMPROVE_BLOCKS_H
 #define LAVES_IMPROVE_BLOCKS_H
 
@@ -19,8 +20,11 @@ typedef struct laves__blocks {
   int pass;
 } laves__blocks;
 
-/* For a layer with a given boundary, whose vertices will not be more than they are now. False when memory is short. */
-bool laves__blocks_begin(laves__layer *layer, laves__blocks *blocks);
+/* For a layer with a given boundary, whose vertices will not be more than they are now; at least `least` vertices go to a block of a
+ * mesh that fills its box (0: as many as is usual). False when memory is short. */
+bool laves__blocks_begin(laves__layer *layer, size_t least, laves__blocks *blocks);
+/* How many turns there are until each vertex has moved: 1 where all is one block. */
+int laves__blocks_turns(const laves__blocks *blocks);
 /* Makes new blocks: who stands still has depth LAVES__DEPTH_MAX, and no star. LAVES_ERROR_MEMORY. */
 laves_result laves__blocks_shift(laves__blocks *blocks, laves__layer *layer, laves_error *error);
 /* Gives all vertices their depths and stars back. */

@@ -265,7 +265,7 @@ static void collect_spare(work *w) {
     if (w->layer->tet[t][0] < 0) w->spare[w->spare_count++] = (int32_t)t;
   w->spare_vertex_count = 0;
   for (size_t v = w->first_spare_vertex; w->spare_vertex && v < w->layer->vertex_count; v++)
-    if (w->layer->star[v].count == 0) w->spare_vertex[w->spare_vertex_count++] = (int32_t)v;
+    if (w->layer->star[v].count == 0 && laves__layer_moves(w->layer, (int32_t)v)) w->spare_vertex[w->spare_vertex_count++] = (int32_t)v;
 }
 
 static bool is_late(const work *w) { return w->deadline > 0 && laves__wall_seconds() > w->deadline; }
@@ -315,13 +315,19 @@ static laves_result run_pass(work *w, size_t *before, laves_error *error) {
 /* Passes of one kind until `patience` of them in a row found too little cured. (A contraction may leave more bad tets than
  * it found, all of them better than the worst was; the next pass smooths them.) */
 static laves_result run_passes(work *w, int passes, int patience, laves_error *error) {
+  const int turns = w->layer->patch ? laves__blocks_turns(&w->blocks) : 1;
   size_t best = SIZE_MAX;
-  for (int pass = 0, idle = 0; pass < passes && idle < patience; pass++) {
+  const int most = turns > 1 ? (passes + 1) / 2 : passes; /* in four turns most vertices move three times */
+  for (int pass = 0, idle = 0; pass < most && idle < patience; pass++) {
     size_t before = 0;
     if (w->passes_left == 0 || is_late(w)) return LAVES_OK;
     w->passes_left--;
-    const laves_result result = run_pass(w, &before, error);
-    if (result != LAVES_OK || before == 0) return result;
+    for (int turn = 0; turn < turns; turn++) {
+      size_t left = 0;
+      const laves_result result = run_pass(w, &left, error);
+      if (turn == 0) before = left;
+      if (result != LAVES_OK || left == 0) return result;
+    }
     idle = (double)before > (1 - w->worthwhile) * (double)best ? idle + 1 : 0;
     if (before < best) best = before;
   }
@@ -537,7 +543,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   for (size_t t = 0; t < layer->tet_count; t++) w.given_up[t] = w.stuck[t] = HUGE_VAL;
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
   if (!laves__parallel_for(context, NULL, layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
-  if (layer->patch && !laves__blocks_begin(layer, &w.blocks)) result = laves__fail_memory(context, error);
+  if (layer->patch && !laves__blocks_begin(layer, window->block_vertices, &w.blocks)) result = laves__fail_memory(context, error);
   if (result == LAVES_OK && !layer->patch && !window->again && window->rescue_min == 0)
     result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
   if (result == LAVES_OK) result = mend_all(&w, window, error);
