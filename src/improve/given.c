@@ -362,7 +362,7 @@ static laves__box3 box_of(const laves_mesh *mesh) {
   return box;
 }
 
-static laves_result fill_layer(work *w, laves_error *error) {
+static laves_result fill_layer(work *w, bool fixed, laves_error *error) {
   const laves_mesh *mesh = w->mesh;
   laves__layer *layer = w->layer;
   laves_result result = laves__layer_create(w->context, mesh->vertex_count, mesh->tet_count, layer, error);
@@ -373,6 +373,7 @@ static laves_result fill_layer(work *w, laves_error *error) {
   if (mesh->regions) layer->region = laves__alloc(w->context, mesh->tet_count, sizeof *layer->region);
   if (!layer->scale || !layer->hold || !layer->patch || (mesh->regions && !layer->region))
     return laves__fail_memory(w->context, error);
+  layer->fixed_boundary = fixed;
   memcpy(layer->tet, mesh->tets, mesh->tet_count * sizeof *layer->tet);
   if (mesh->regions) memcpy(layer->region, mesh->regions, mesh->tet_count * sizeof *layer->region);
   for (size_t t = 0; t < mesh->tet_count; t++) {
@@ -405,7 +406,7 @@ laves_result laves__given_layer(laves_context *context, const laves_mesh *mesh, 
   work w = {.context = context, .mesh = mesh, .given = given, .layer = layer};
   memset(layer, 0, sizeof *layer);
   *given = (laves__given){.context = context, .mesh = mesh};
-  laves_result result = fill_layer(&w, error);
+  laves_result result = fill_layer(&w, fixed, error);
   w.rounding = rounding_share * box3_diagonal(box_of(mesh)) / given->size;
   w.flatness = fmax(0.5 * tolerance / given->size, w.rounding);
   if (result == LAVES_OK)

@@ -60,9 +60,22 @@ static laves__hold hold_of_edge(const laves__frame *frame, const laves__layer *l
   return (laves__hold){0, LAVES__HOLD_SURFACE};
 }
 
+/* Faces at an edge beyond which there is nothing. */
+static int outer_faces(const laves__layer *layer, int32_t a, int32_t b, const around *r) {
+  int count = 0;
+  for (int i = 0; i < r->count; i++)
+    for (int k = 0; k < 4; k++) {
+      const int32_t *t = layer->tet[r->tet[i]];
+      if (t[k] == a || t[k] == b || layer->patch[r->tet[i]][k] == LAVES__NO_PATCH) continue;
+      count += laves__layer_across(layer, r->tet[i], k) < 0;
+    }
+  return count;
+}
+
 /* The same where the boundary is given: in its patch, or on its crease, which is the edge itself. False: its faces are too thin to tell. */
 static bool hold_given(laves__layer *layer, int32_t a, int32_t b, const around *r, int32_t m) {
   int32_t patch;
+  if (layer->fixed_boundary || outer_faces(layer, a, b, r) > 2) return false; /* where the boundary touches itself it stays */
   laves__given_edge(layer, a, b, &patch);
   const laves__vec3 along = v3_sub(layer->position[b], layer->position[a]);
   if (patch == LAVES__NO_PATCH) {

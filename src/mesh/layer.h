@@ -44,6 +44,7 @@ typedef struct laves__layer {
   size_t tet_count;
   int32_t (*tet)[4];   /* tet[t][0] < 0: dead */
   int32_t (*patch)[4]; /* of the face opposite each corner, or LAVES__NO_PATCH for faces inside; NULL: the boundary is not given */
+  bool fixed_boundary; /* of a given boundary: its vertices and faces stay as they are */
   int32_t *region;     /* [tet_count] of a given mesh; NULL: all are one */
   double *quality;     /* [tet_count], kept by the improver */
   int32_t *star_block; /* slices for the stars */
