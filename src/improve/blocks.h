@@ -2,8 +2,9 @@
  *
  * Tets of other programs may be of any length, so no distance keeps what is done in one block out of sight of the next. Instead the
  * vertices that have a neighbour in another block stand still, and so all that is read and changed in a block is its own, or still.
- * From one turn to the next the blocks are shifted by a quarter of their side in all axes: each border plane of a block is near a
- * vertex in one of four turns at most, and there are three axes, so that each vertex moves in one of any four. */
+ * From one turn to the next the blocks are shifted by a quarter of their side in all axes. A border plane of a block is near a
+ * vertex in one of four turns at most, where blocks are more than eight edges wide, and there are three axes: so each vertex moves
+ * in one of any four turns. */
 #ifndef LAVES_IMPROVE_BLOCKS_H
 #define LAVES_IMPROVE_BLOCKS_H
 
