@@ -49,6 +49,8 @@ static const double far_outside = 0.75;     /* quality: about 36 to 131 degrees 
 static const double wall_admit = 0.8;       /* quality: about 37 to 128 degrees; enough for tets that span a wall */
 static const size_t wall_count = 200;       /* bad ones; fewer get all the patience there is */
 static const double graded_crowd = 0.1;     /* what `crowd` is on a graded background, after flips */
+static const double given_crowd = 0.05;     /* what `crowd` is in the mesh of another program */
+static const size_t given_crowd_min = 500;  /* tets */
 static const double peel_below = 0.5;       /* quality below which a tet between two surfaces is taken away, if it can be */
 static const double settle_floor = 0.2;     /* quality that bringing a vertex back to the surface may cost: about 18 degrees */
 
@@ -98,6 +100,7 @@ typedef struct work {
   double admit;      /* tets below this quality are worked on */
   size_t passes_left; /* that are allowed */
   double deadline;    /* wall seconds; 0: none */
+  uint8_t *near;      /* [tet_count] who is worked on besides; NULL: all */
   double worthwhile; /* share of them that a pass must cure to be followed by its like */
   bool thin;         /* tets that span a wall are good enough at wall_admit */
   int rounds;        /* of smoothing around a contraction; 0: smoothing only */
@@ -119,7 +122,7 @@ static bool spans_wall(const laves__layer *layer, int32_t t) {
 }
 
 static bool is_bad(const work *w, int32_t t) {
-  if (w->layer->tet[t][0] < 0 || !(w->layer->quality[t] < w->admit)) return false;
+  if (w->layer->tet[t][0] < 0 || !(w->layer->quality[t] < w->admit) || (w->near && !w->near[t])) return false;
   return !w->thin || w->layer->quality[t] < wall_admit || !spans_wall(w->layer, t);
 }
 
@@ -231,6 +234,8 @@ static void mend(work *w, int32_t t, laves__slots *slots, laves__spare *vertices
   const double before = surroundings(w->layer, t);
   if (before == w->given_up[t]) return;
   if (before != w->stuck[t]) {
+    if (w->layer->patch) flip(w, t, slots, journal); /* elsewhere the connectivity is good, and what a tet needs is a move */
+    if (w->layer->tet[t][0] < 0 || !is_bad(w, t)) return;
     smooth_corners(w, t, false);
     smooth_corners(w, t, true);
     w->stuck[t] = surroundings(w->layer, t);
@@ -427,19 +432,60 @@ static laves_result mend_graded(work *w, laves_error *error) {
 }
 
 /* The mesh of another program. */
+/* Marks what shares a vertex with a tet below a quality. */
+static void mark_near(const work *w, double below) {
+  for (size_t t = 0; t < w->layer->tet_count; t++) {
+    const int32_t *v = w->layer->tet[t];
+    if (v[0] < 0 || w->layer->quality[t] >= below) continue;
+    for (int k = 0; k < 4; k++)
+      for (int i = 0; i < w->layer->star[v[k]].count; i++) w->near[w->layer->star[v[k]].tet[i]] = 1;
+  }
+}
+
+/* What is around the worst is made better than is asked, which leaves them more to move in. */
+static laves_result make_room(work *w, double below, laves_error *error) {
+  enum { ROOM_PASSES = 2 };
+  static const double ample = 1.5; /* quality */
+  laves_context *context = w->layer->context;
+  laves_result result = laves__blocks_end(&w->blocks, w->layer, error);
+  if (result != LAVES_OK) return result;
+  w->near = laves__alloc_zeroed(context, w->layer->tet_count, 1);
+  if (!w->near) return laves__fail_memory(context, error);
+  mark_near(w, below);
+  w->admit = w->target = ample;
+  w->rounds = 1;
+  forget(w);
+  result = run_passes(w, ROOM_PASSES, ROOM_PASSES, error);
+  laves__free(context, w->near, w->layer->tet_count, 1);
+  w->near = NULL;
+  return result;
+}
+
+/* The mesh of another program: a quarter of it may be bad, by its connectivity. Flips and smoothing cure most of that at little cost;
+ * contraction and splits are for the worst first, and while these get better smoothing aims beyond what is asked, so that there
+ * is room for the next. Where few are left in the end, all of them are treated so. Measured on meshes of TetGen and Gmsh:
+ * the worst angles come out better, and in a fifth of the time, than when all that is bad is treated alike. */
 static laves_result mend_given(work *w, laves_error *error) {
   static const struct {
     int rounds, passes;
-    double admit;
-  } steps[] = {{0, 2, 1}, {3, 4, 0.6}, {3, 4, 0.7}, {3, 5, 0.8}, {3, 3, 0.9}, {3, 5, 0.8}};
+    double admit, target;
+    bool room; /* is made first */
+  } steps[] = {{0, 2, 1, 1, false},      {3, 4, 0.6, 1, false},   {3, 3, 0.7, 1.2, false},
+               {3, 4, 0.8, 1.2, false}, {3, 3, 0.8, 1.6, false}, {3, 3, 0.74, 1.2, true}};
   laves_result result = LAVES_OK;
   for (size_t i = 0; i < LAVES__COUNT_OF(steps) && result == LAVES_OK; i++) {
+    if (steps[i].room) result = make_room(w, steps[i].admit, error);
+    if (result != LAVES_OK) break;
     w->rounds = steps[i].rounds;
     w->admit = steps[i].admit;
+    w->target = steps[i].target;
     forget(w);
     result = run_passes(w, steps[i].passes, 1, error);
   }
-  return result;
+  w->admit = w->target = 1;
+  if (result != LAVES_OK || is_crowded(w, given_crowd, given_crowd_min)) return result;
+  forget(w);
+  return run_passes(w, CONTRACT_PASSES, 1, error);
 }
 
 /* Creases sharper than the window, and a little more, fix the angle of a tet that fills them alone. */
