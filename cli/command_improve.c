@@ -22,8 +22,7 @@ typedef struct improve_run {
 
 static laves_result read_mesh(session *run, improve_run *all) {
   const double start = progress_now();
-  const laves_result result =
-      session_settle(run, laves_mesh_read(run->context, run->given->input, &all->before, &run->error));
+  const laves_result result = session_settle(run, laves_mesh_read(run->context, run->given->input, &all->before, &run->error));
   all->read_seconds = progress_now() - start;
   return result;
 }

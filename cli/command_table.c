@@ -32,7 +32,8 @@ const command commands[] = {
      "laves check huge.vtu --stream --memory 4G\n",
      CHECK, command_check},
     {"improve", "MESH", "better the angles of a tetrahedral mesh of any program",
-     "MESH is what `laves check` takes. Its boundary keeps its shape, regions and tags stay, and the worst angles never get worse\n"
+     "MESH is what `laves check` takes. Its boundary keeps its shape, regions and tags stay, and the worst angles never get "
+     "worse\n"
      "(docs/improve.md). Exit code 2: it cannot be read, or is not valid; 3: a window asked for with --window or\n"
      "--volume-length is missed.",
      "laves improve part.msh -o better.msh\n"
@@ -213,8 +214,8 @@ const option option_rows[] = {
      "where the picture goes (PNG); needed"},
     {"output", 'o', IMPROVE, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, OUTPUT_CAPACITY, NULL, MEMBER(outputs), 0,
      "where the improved mesh goes; needed; repeat it for several formats"},
-    {"format", 0, MESH | TILING | IMPROVE, IN_FILES, OPTION_FORMAT, "NAME", NULL, false, 0, 0, "from the extension", MEMBER(format), 0,
-     "format of the one output: "},
+    {"format", 0, MESH | TILING | IMPROVE, IN_FILES, OPTION_FORMAT, "NAME", NULL, false, 0, 0, "from the extension",
+     MEMBER(format), 0, "format of the one output: "},
     {"ascii", 0, MESH | TILING | IMPROVE, IN_FILES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(ascii), 0,
      "text instead of binary, where the format has both"},
     {"compress", 0, MESH | TILING | IMPROVE, IN_FILES, OPTION_COUNT, "N", NULL, false, 0, 9, "1", MEMBER(compress), 0,
@@ -240,8 +241,8 @@ const option option_rows[] = {
     {"json", 0, DATA, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(json), 0,
      "write all facts as JSON (docs/json.md); - is the standard output"},
 
-    {"threads", 0, MESH | CHECK | INFO | IMPROVE, IN_RUN, OPTION_COUNT, "N", NULL, false, 1, 4096, "one per core", MEMBER(threads), 0,
-     "threads to use; the mesh never depends on it"},
+    {"threads", 0, MESH | CHECK | INFO | IMPROVE, IN_RUN, OPTION_COUNT, "N", NULL, false, 1, 4096, "one per core",
+     MEMBER(threads), 0, "threads to use; the mesh never depends on it"},
     {"memory", 0, ALL, IN_RUN, OPTION_BYTES, "SIZE", "bytes", false, 1, 1e18, "what the machine has", MEMBER(memory), 0,
      "most memory to hold, such as 500M or 2G (powers of 1024); exit code 4 when it is not enough, before meshing begins where "
      "that can "

@@ -9,12 +9,13 @@ Writes Gmsh's format 2.2. Netgen (LGPL) runs in this process alone.
 import sys
 import time
 
-from netgen.meshing import Element2D, Element3D, FaceDescriptor, Mesh, MeshingParameters, MeshPoint, Pnt
+from netgen.meshing import Element2D, Element3D, FaceDescriptor, Mesh, MeshPoint, Pnt
 
 
 def read_medit(path):
     """Points, tets and triangles, numbered from 1."""
-    words = iter(open(path).read().split())
+    with open(path) as file:
+        words = iter([word for line in file if not line.startswith("#") for word in line.split()])
     found = {"Vertices": [], "Tetrahedra": [], "Triangles": []}
     widths = {"Vertices": 3, "Tetrahedra": 4, "Triangles": 3}
     for word in words:
@@ -38,7 +39,7 @@ def main():
     for t in tets:
         mesh.Add(Element3D(1, [numbers[t[i] - 1] for i in (0, 2, 1, 3)]))
     start = time.process_time()
-    mesh.OptimizeVolumeMesh(MeshingParameters())
+    mesh.OptimizeVolumeMesh()
     print(time.process_time() - start)
     mesh.Export(target, "Gmsh2 Format")
 

@@ -134,7 +134,8 @@ static bool hand_on_patches(laves__layer *layer, int32_t a, int32_t b, const rin
     const int32_t beyond = laves__layer_across(layer, t, of_a != LAVES__NO_PATCH ? at_a : at_b);
     if (beyond < 0 || !laves__journal_tet(j, layer, beyond)) return false;
     for (int k = 0; k < 4; k++)
-      if (laves__layer_corner(layer, t, layer->tet[beyond][k]) < 0) layer->patch[beyond][k] = of_a != LAVES__NO_PATCH ? of_a : of_b;
+      if (laves__layer_corner(layer, t, layer->tet[beyond][k]) < 0)
+        layer->patch[beyond][k] = of_a != LAVES__NO_PATCH ? of_a : of_b;
   }
   return true;
 }

@@ -1,8 +1,8 @@
-/* Patches grow from the largest faces over edges to what is in the same plane; then each vertex counts the creases that end at it.
- * Everything is decided from the mesh alone, in a fixed order.
+/* Patches grow from the largest faces over edges to what is in the same plane; then each vertex counts the creases that end at
+ * it. Everything is decided from the mesh alone, in a fixed order.
  *
- * Within a tolerance: all faces of a patch are within half of it of the patch's plane, in which its inner vertices move; its border
- * stays. So no face that comes to the patch is further from one of the old ones than the tolerance. Borders count as
+ * Within a tolerance: all faces of a patch are within half of it of the patch's plane, in which its inner vertices move; its
+ * border stays. So no face that comes to the patch is further from one of the old ones than the tolerance. Borders count as
  * straight only where they are, to rounding: there nothing bounds how much several such steps would add up to. */
 #include "improve/given.h"
 
@@ -48,8 +48,8 @@ typedef struct work {
   given_edge *edge;
   size_t edge_count;
   meeting *meeting;
-  double flatness; /* how far from its plane a patch may be, units of the layer */
-  double rounding; /* the same of straight lines, whatever is tolerated */
+  double flatness;    /* how far from its plane a patch may be, units of the layer */
+  double rounding;    /* the same of straight lines, whatever is tolerated */
   laves__vec3 *plane; /* [patch_count] normals */
 } work;
 
@@ -483,12 +483,13 @@ static laves_result make_mesh(const laves__given *given, const laves__layer *lay
   const laves_mesh *before = given->mesh;
   number_vertices(given, layer, a);
   fill_tets(layer, a);
-  laves_result result = laves_mesh_from_arrays(given->context, &a->point->x, a->vertex_count, *a->tet, a->tet_count, a->region,
-                                               mesh, error);
+  laves_result result =
+      laves_mesh_from_arrays(given->context, &a->point->x, a->vertex_count, *a->tet, a->tet_count, a->region, mesh, error);
   if (result == LAVES_OK && before->face_tags) result = find_tags(given, layer, a, *mesh, error);
   for (size_t i = 0; result == LAVES_OK && i < before->group_count; i++) {
     const laves__group *group = &before->groups[i];
-    if (!laves__mesh_add_group(*mesh, group->dimension, group->tag, group->name)) result = laves__fail_memory(given->context, error);
+    if (!laves__mesh_add_group(*mesh, group->dimension, group->tag, group->name))
+      result = laves__fail_memory(given->context, error);
   }
   if (result == LAVES_OK) return result;
   laves_mesh_free(*mesh);

@@ -1,8 +1,8 @@
 /* The mesh of any program as a layer whose boundary is given, and back.
  *
  * The boundary of the mesh, and the borders between its regions, are kept as they are in space: faces in one plane, with one tag
- * and between the same regions, form a patch; edges between patches are creases. A vertex amid a patch may move in its plane, one on
- * a straight crease along it; all others stay.
+ * and between the same regions, form a patch; edges between patches are creases. A vertex amid a patch may move in its plane, one
+ * on a straight crease along it; all others stay.
  *
  *      +-------o-------+          o  a patch's border: moves along it, if it is straight
  *      |       |  .    |          .  amid a patch: moves in its plane
@@ -24,7 +24,7 @@ typedef struct laves__given {
   int32_t *patch_tag; /* [patch_count] */
   size_t patch_count;
   size_t held_vertices, crease_vertices, flat_vertices; /* of the boundary and borders: that stay, move along lines, in planes */
-  double sharpest;                                      /* least angle between patches inside one region, degrees; 180: there is none */
+  double sharpest; /* least angle between patches inside one region, degrees; 180: there is none */
 } laves__given;
 
 /* The layer of a mesh that is valid. The boundary keeps its place within `tolerance`, units of the mesh; 0: but for rounding.

@@ -193,7 +193,8 @@ unsigned laves__given_fixed_edges(double sharp_cosine, const laves__layer *layer
   laves__layer_points(layer, tet, p);
   for (int e = 0; e < 6; e++) {
     const uint8_t *others = laves__tet_edge[5 - e]; /* the faces at the edge are opposite the two other corners */
-    if (patch[others[0]] == LAVES__NO_PATCH || patch[others[1]] == LAVES__NO_PATCH || patch[others[0]] == patch[others[1]]) continue;
+    if (patch[others[0]] == LAVES__NO_PATCH || patch[others[1]] == LAVES__NO_PATCH || patch[others[0]] == patch[others[1]])
+      continue;
     if (face_cosine(p, others[0], others[1]) > sharp_cosine) fixed |= 1u << e;
   }
   return fixed;

@@ -94,16 +94,16 @@ typedef struct work {
   size_t spare_count;
   int32_t *spare_vertex; /* [spare_vertex_count] dead vertices that splits may use, shared out likewise; NULL: no splits */
   size_t spare_vertex_count, first_spare_vertex;
-  uint8_t *tries;    /* [tet_count] full treatments so far, at most TRIES_MAX */
-  double *stuck;     /* [tet_count] surroundings in which smoothing ended */
-  double *given_up;  /* [tet_count] surroundings in which the last full treatment failed */
-  double admit;      /* tets below this quality are worked on */
+  uint8_t *tries;     /* [tet_count] full treatments so far, at most TRIES_MAX */
+  double *stuck;      /* [tet_count] surroundings in which smoothing ended */
+  double *given_up;   /* [tet_count] surroundings in which the last full treatment failed */
+  double admit;       /* tets below this quality are worked on */
   size_t passes_left; /* that are allowed */
   double deadline;    /* wall seconds; 0: none */
   uint8_t *near;      /* [tet_count] who is worked on besides; NULL: all */
-  double worthwhile; /* share of them that a pass must cure to be followed by its like */
-  bool thin;         /* tets that span a wall are good enough at wall_admit */
-  int rounds;        /* of smoothing around a contraction; 0: smoothing only */
+  double worthwhile;  /* share of them that a pass must cure to be followed by its like */
+  bool thin;          /* tets that span a wall are good enough at wall_admit */
+  int rounds;         /* of smoothing around a contraction; 0: smoothing only */
 } work;
 
 static void measure_all(void *user, size_t begin, size_t end, int worker) {
@@ -270,7 +270,8 @@ static void collect_spare(work *w) {
     if (w->layer->tet[t][0] < 0) w->spare[w->spare_count++] = (int32_t)t;
   w->spare_vertex_count = 0;
   for (size_t v = w->first_spare_vertex; w->spare_vertex && v < w->layer->vertex_count; v++)
-    if (w->layer->star[v].count == 0 && laves__layer_moves(w->layer, (int32_t)v)) w->spare_vertex[w->spare_vertex_count++] = (int32_t)v;
+    if (w->layer->star[v].count == 0 && laves__layer_moves(w->layer, (int32_t)v))
+      w->spare_vertex[w->spare_vertex_count++] = (int32_t)v;
 }
 
 static bool is_late(const work *w) { return w->deadline > 0 && laves__wall_seconds() > w->deadline; }
@@ -461,16 +462,16 @@ static laves_result make_room(work *w, double below, laves_error *error) {
   return result;
 }
 
-/* The mesh of another program: a quarter of it may be bad, by its connectivity. Flips and smoothing cure most of that at little cost;
- * contraction and splits are for the worst first, and while these get better smoothing aims beyond what is asked, so that there
- * is room for the next. Where few are left in the end, all of them are treated so. Measured on meshes of TetGen and Gmsh:
+/* The mesh of another program: a quarter of it may be bad, by its connectivity. Flips and smoothing cure most of that at little
+ * cost; contraction and splits are for the worst first, and while these get better smoothing aims beyond what is asked, so that
+ * there is room for the next. Where few are left in the end, all of them are treated so. Measured on meshes of TetGen and Gmsh:
  * the worst angles come out better, and in a fifth of the time, than when all that is bad is treated alike. */
 static laves_result mend_given(work *w, laves_error *error) {
   static const struct {
     int rounds, passes;
     double admit, target;
     bool room; /* is made first */
-  } steps[] = {{0, 2, 1, 1, false},      {3, 4, 0.6, 1, false},   {3, 3, 0.7, 1.2, false},
+  } steps[] = {{0, 2, 1, 1, false},     {3, 4, 0.6, 1, false},   {3, 3, 0.7, 1.2, false},
                {3, 4, 0.8, 1.2, false}, {3, 3, 0.8, 1.6, false}, {3, 3, 0.74, 1.2, true}};
   laves_result result = LAVES_OK;
   for (size_t i = 0; i < LAVES__COUNT_OF(steps) && result == LAVES_OK; i++) {
@@ -488,12 +489,22 @@ static laves_result mend_given(work *w, laves_error *error) {
   return run_passes(w, CONTRACT_PASSES, 1, error);
 }
 
+/* The same where the boundary is given: looked for in each tet once, so that where there are none nobody asks again. */
+static void leave_out_given(work *w) {
+  const double cosine = cos(w->measure.sharper_than * (3.14159265358979323846 / 180));
+  for (size_t t = 0; t < w->layer->tet_count; t++)
+    if (w->layer->tet[t][0] >= 0 && laves__given_fixed_edges(cosine, w->layer, (int32_t)t)) {
+      w->measure.sharp_cosine = cosine;
+      return;
+    }
+}
+
 /* Creases sharper than the window, and a little more, fix the angle of a tet that fills them alone. */
 static void leave_out_sharp(work *w, const laves__window *window) {
   static const double margin = 2; /* degrees */
   const laves__features *f = w->layer->hold && !w->layer->patch ? w->frame->features : NULL;
   w->measure.sharper_than = window->min_dihedral + margin;
-  if (w->layer->patch) w->measure.sharp_cosine = cos(w->measure.sharper_than * (3.14159265358979323846 / 180));
+  if (w->layer->patch) leave_out_given(w);
   for (size_t i = 0; f && i < f->crease_count; i++)
     if (f->crease[i].least_angle < w->measure.sharper_than) w->measure.sharp = f;
 }

@@ -72,7 +72,8 @@ static int outer_faces(const laves__layer *layer, int32_t a, int32_t b, const ar
   return count;
 }
 
-/* The same where the boundary is given: in its patch, or on its crease, which is the edge itself. False: its faces are too thin to tell. */
+/* The same where the boundary is given: in its patch, or on its crease, which is the edge itself. False: its faces are too thin
+ * to tell. */
 static bool hold_given(laves__layer *layer, int32_t a, int32_t b, const around *r, int32_t m) {
   int32_t patch;
   if (layer->fixed_boundary || outer_faces(layer, a, b, r) > 2) return false; /* where the boundary touches itself it stays */

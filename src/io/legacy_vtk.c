@@ -9,9 +9,12 @@
 static const struct {
   const char *name;
   laves__legacy_kind kind;
-} kind_names[] = {{"char", LAVES__LEGACY_INT8},           {"unsigned_char", LAVES__LEGACY_UINT8}, {"short", LAVES__LEGACY_INT16},     {"unsigned_short", LAVES__LEGACY_UINT16},
-                  {"int", LAVES__LEGACY_INT32},           {"unsigned_int", LAVES__LEGACY_UINT32}, {"long", LAVES__LEGACY_INT64},      {"unsigned_long", LAVES__LEGACY_UINT64},
-                  {"float", LAVES__LEGACY_FLOAT32},       {"double", LAVES__LEGACY_FLOAT64},      {"vtkIdType", LAVES__LEGACY_INT32}, {"vtktypeint64", LAVES__LEGACY_INT64},
+} kind_names[] = {{"char", LAVES__LEGACY_INT8},           {"unsigned_char", LAVES__LEGACY_UINT8},
+                  {"short", LAVES__LEGACY_INT16},         {"unsigned_short", LAVES__LEGACY_UINT16},
+                  {"int", LAVES__LEGACY_INT32},           {"unsigned_int", LAVES__LEGACY_UINT32},
+                  {"long", LAVES__LEGACY_INT64},          {"unsigned_long", LAVES__LEGACY_UINT64},
+                  {"float", LAVES__LEGACY_FLOAT32},       {"double", LAVES__LEGACY_FLOAT64},
+                  {"vtkIdType", LAVES__LEGACY_INT32},     {"vtktypeint64", LAVES__LEGACY_INT64},
                   {"vtktypeuint64", LAVES__LEGACY_UINT64}};
 static const size_t kind_bytes[LAVES__LEGACY_KINDS] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
 
@@ -139,7 +142,8 @@ laves_result laves__legacy_read_points(laves__legacy *r, laves_error *error) {
   laves__legacy_row numbers = laves__legacy_begin_row(r, kind);
   for (size_t i = 0; i < count; i++) {
     laves__vec3 p;
-    if (!laves__legacy_real(r, &numbers, &p.x) || !laves__legacy_real(r, &numbers, &p.y) || !laves__legacy_real(r, &numbers, &p.z))
+    if (!laves__legacy_real(r, &numbers, &p.x) || !laves__legacy_real(r, &numbers, &p.y) ||
+        !laves__legacy_real(r, &numbers, &p.z))
       return laves__legacy_fail_short(r, numbers.at, "a coordinate", error);
     if (!laves__mesh_input_add_point(r->input, p)) return laves__fail_memory(r->input->context, error);
     if (i % 65536 == 65535 && laves__mesh_input_cancelled(r->input, numbers.at)) return laves__fail_cancelled(error);
@@ -150,7 +154,8 @@ laves_result laves__legacy_read_points(laves__legacy *r, laves_error *error) {
 
 /* ---- cells ---- */
 
-static laves_result read_part(laves__legacy *r, const char *keyword, size_t count, laves__legacy_row *numbers, laves_error *error) {
+static laves_result read_part(laves__legacy *r, const char *keyword, size_t count, laves__legacy_row *numbers,
+                              laves_error *error) {
   laves__legacy_kind kind = LAVES__LEGACY_INT8;
   if (!laves__scan_space(&r->scan) || !laves__scan_keyword(&r->scan, keyword))
     return laves__scan_fail_expected(&r->scan, error, keyword);
@@ -194,7 +199,8 @@ laves_result laves__legacy_begin_cell(const laves__legacy *r, laves__legacy_cell
     if (laves__legacy_integer(r, &c->connectivity, size) && *size >= 0) return LAVES_OK;
     return laves__legacy_fail_short(r, c->connectivity.at, "the number of points of a cell", error);
   }
-  if (!laves__legacy_integer(r, &c->offsets, &end)) return laves__legacy_fail_short(r, c->offsets.at, "the offset of a cell", error);
+  if (!laves__legacy_integer(r, &c->offsets, &end))
+    return laves__legacy_fail_short(r, c->offsets.at, "the offset of a cell", error);
   if (end < c->offset) return laves__mesh_input_fail(r->input, error, "the offsets of its cells are out of order");
   *size = end - c->offset;
   c->offset = end;

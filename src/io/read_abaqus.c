@@ -3,8 +3,9 @@
  *
  * A set of tetrahedra named by *ELEMENT or *ELSET is a region, by the first of the sets that holds it; a set of triangles, or a
  * *SURFACE of faces of tetrahedra, is a tag. Both count from 1 in the order of the file and keep their names. What else there is
- * (materials, steps, loads) is passed over. A file with several parts has to number their nodes differently. Lines are fields with
- * commas between; one that ends with a comma goes on in the next. Source: "Abaqus Keywords Reference Manual", Dassault Systemes. */
+ * (materials, steps, loads) is passed over. A file with several parts has to number their nodes differently. Lines are fields
+ * with commas between; one that ends with a comma goes on in the next. Source: "Abaqus Keywords Reference Manual", Dassault
+ * Systemes. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -41,14 +42,14 @@ typedef struct member {
 typedef struct named_set {
   laves__word name;
   bool is_surface;
-  int32_t region, tag;      /* 0: none yet */
+  int32_t region, tag;               /* 0: none yet */
   int64_t first_member, last_member; /* -1: none */
 } named_set;
 
 typedef struct abaqus {
   laves__mesh_input *input;
-  const char *at;     /* behind the line in hand */
-  const char *line;   /* its begin */
+  const char *at;   /* behind the line in hand */
+  const char *line; /* its begin */
   laves__word field[FIELDS_MAX];
   int field_count;
   card card;
@@ -270,9 +271,9 @@ static void choose_kind(abaqus *a, laves__word type) {
   static const struct {
     const char *name;
     int corners, nodes;
-  } kinds[] = {{"C3D10", 4, 10}, {"C3D4", 4, 4},  {"DC3D10", 4, 10}, {"DC3D4", 4, 4}, {"STRI65", 3, 6}, {"STRI3", 3, 3}, {"S3", 3, 3},
-               {"S6", 3, 6},     {"CPS3", 3, 3},  {"CPE3", 3, 3},    {"CPS6", 3, 6},  {"CPE6", 3, 6},   {"M3D3", 3, 3},  {"M3D6", 3, 6},
-               {"R3D3", 3, 3},   {"SFM3D3", 3, 3}, {"SFM3D6", 3, 6}};
+  } kinds[] = {{"C3D10", 4, 10}, {"C3D4", 4, 4}, {"DC3D10", 4, 10}, {"DC3D4", 4, 4},  {"STRI65", 3, 6}, {"STRI3", 3, 3},
+               {"S3", 3, 3},     {"S6", 3, 6},   {"CPS3", 3, 3},    {"CPE3", 3, 3},   {"CPS6", 3, 6},   {"CPE6", 3, 6},
+               {"M3D3", 3, 3},   {"M3D6", 3, 6}, {"R3D3", 3, 3},    {"SFM3D3", 3, 3}, {"SFM3D6", 3, 6}};
   a->corners = a->nodes = 0;
   for (size_t i = 0; i < LAVES__COUNT_OF(kinds); i++) {
     const size_t length = strlen(kinds[i].name);
@@ -406,8 +407,7 @@ static laves_result add_elements(abaqus *a, laves_error *error) {
                                       (long long)a->row[i][k]);
     }
     e->place = (int32_t)(e->is_face ? input->face_count : input->tet_count);
-    const bool enough =
-        e->is_face ? laves__mesh_input_add_face(input, corner, 0) : laves__mesh_input_add_tet(input, corner, 0);
+    const bool enough = e->is_face ? laves__mesh_input_add_face(input, corner, 0) : laves__mesh_input_add_tet(input, corner, 0);
     if (!enough) return laves__fail_memory(input->context, error);
     if (i % 65536 == 65535 && laves__mesh_input_cancelled(input, input->end)) return laves__fail_cancelled(error);
   }

@@ -19,7 +19,8 @@ static laves_result read_cell(const laves__legacy *r, laves__legacy_cells *c, ce
   if (result != LAVES_OK) return result;
   bool enough = true;
   for (int64_t i = 0; i < size && enough; i++) {
-    if (!laves__legacy_integer(r, &c->connectivity, &point)) return laves__legacy_fail_short(r, c->connectivity.at, "a point of a cell", error);
+    if (!laves__legacy_integer(r, &c->connectivity, &point))
+      return laves__legacy_fail_short(r, c->connectivity.at, "a point of a cell", error);
     if (use == IGNORED) continue;
     if (point < 0 || point > INT32_MAX)
       return laves__mesh_input_fail(r->input, error, "a line uses point %lld, which the file does not have", (long long)point);
@@ -35,11 +36,13 @@ static laves_result read_cell(const laves__legacy *r, laves__legacy_cells *c, ce
 }
 
 /* All cells are used alike, but where `types` has a type for each. */
-static laves_result read_cells(const laves__legacy *r, laves__legacy_cells *c, cell_use use, laves__legacy_row *types, laves_error *error) {
+static laves_result read_cells(const laves__legacy *r, laves__legacy_cells *c, cell_use use, laves__legacy_row *types,
+                               laves_error *error) {
   laves_result result = LAVES_OK;
   for (size_t i = 0; i < c->count && result == LAVES_OK; i++) {
     int64_t type;
-    if (types && !laves__legacy_integer(r, types, &type)) return laves__legacy_fail_short(r, types->at, "the type of a cell", error);
+    if (types && !laves__legacy_integer(r, types, &type))
+      return laves__legacy_fail_short(r, types->at, "the type of a cell", error);
     result = read_cell(r, c, types ? use_of(type) : use, error);
     if (i % 65536 == 65535 && laves__mesh_input_cancelled(r->input, c->connectivity.at)) return laves__fail_cancelled(error);
   }

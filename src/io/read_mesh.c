@@ -28,7 +28,8 @@ static bool is_medit_binary(const laves__mesh_input *input) {
   return memcmp(input->begin, little, 4) == 0 || memcmp(input->begin, big, 4) == 0;
 }
 
-/* A line near the begin is one of the cards that come first in Abaqus's files; a file of one that begins with much else has its name. */
+/* A line near the begin is one of the cards that come first in Abaqus's files; a file of one that begins with much else has its
+ * name. */
 static bool is_abaqus(const laves__mesh_input *input) {
   static const char *const cards[] = {"*NODE", "*Node", "*node", "*HEADING", "*Heading", "*heading", "*PART", "*Part", "*part"};
   for (size_t i = 0; i < LAVES__COUNT_OF(cards); i++)
@@ -101,7 +102,8 @@ static laves_result read_one(laves__mesh_input *input, const char *path, laves_e
     result = read(input, error);
   else
     result = laves__mesh_input_fail(
-        input, error, "it is not a tetrahedral mesh of a format that is known (VTU, legacy VTK, Gmsh, Medit, Abaqus; TetGen by .node or .ele)");
+        input, error,
+        "it is not a tetrahedral mesh of a format that is known (VTU, legacy VTK, Gmsh, Medit, Abaqus; TetGen by .node or .ele)");
   close_file(input);
   return result;
 }

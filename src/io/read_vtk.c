@@ -30,7 +30,8 @@ static laves_result read_cell(laves__legacy *r, int corners, size_t cell, laves_
   }
   if (corners == 0) return LAVES_OK;
   r->input->higher_order |= size > corners;
-  const bool enough = corners == 4 ? laves__mesh_input_add_tet(r->input, corner, 1) : laves__mesh_input_add_face(r->input, corner, 1);
+  const bool enough =
+      corners == 4 ? laves__mesh_input_add_tet(r->input, corner, 1) : laves__mesh_input_add_face(r->input, corner, 1);
   return enough ? LAVES_OK : laves__fail_memory(r->input->context, error);
 }
 
@@ -155,8 +156,8 @@ static laves_result read_cell_data(grid *g, laves_error *error) {
 
 /* ---- the file ---- */
 
-/* Data of points may come before those of cells, and may be of any kind: the line that begins the latter is looked for. In a binary
- * file numbers could look like it, but not for a whole line. */
+/* Data of points may come before those of cells, and may be of any kind: the line that begins the latter is looked for. In a
+ * binary file numbers could look like it, but not for a whole line. */
 static bool find_cell_data(grid *g) {
   laves__scan *scan = &g->file.scan;
   do {
@@ -195,8 +196,7 @@ static laves_result read_section(grid *g, bool *done, laves_error *error) {
 }
 
 laves_result laves__read_vtk(laves__mesh_input *input, laves_error *error) {
-  grid g = {.file = {.input = input,
-                     .scan = laves__scan_begin(input->name, input->begin, (size_t)(input->end - input->begin))}};
+  grid g = {.file = {.input = input, .scan = laves__scan_begin(input->name, input->begin, (size_t)(input->end - input->begin))}};
   laves_result result = laves__legacy_read_head(&g.file, error);
   bool done = false;
   while (result == LAVES_OK && !done && laves__scan_space(&g.file.scan)) result = read_section(&g, &done, error);

@@ -114,10 +114,10 @@ bool laves__layer_extend(laves__layer *l, size_t extra) {
 bool laves__layer_extend_vertices(laves__layer *l, size_t extra) {
   const size_t old = l->vertex_count;
   long_array all[] = {{&l->position, sizeof *l->position, NULL}, {&l->normal, sizeof *l->normal, NULL},
-                        {&l->hint, sizeof *l->hint, NULL},         {&l->depth, sizeof *l->depth, NULL},
-                        {&l->hold, sizeof *l->hold, NULL},         {&l->off_surface, sizeof *l->off_surface, NULL},
-                        {&l->scale, sizeof *l->scale, NULL},       {&l->origin, sizeof *l->origin, NULL},
-                        {&l->star, sizeof *l->star, NULL}};
+                      {&l->hint, sizeof *l->hint, NULL},         {&l->depth, sizeof *l->depth, NULL},
+                      {&l->hold, sizeof *l->hold, NULL},         {&l->off_surface, sizeof *l->off_surface, NULL},
+                      {&l->scale, sizeof *l->scale, NULL},       {&l->origin, sizeof *l->origin, NULL},
+                      {&l->star, sizeof *l->star, NULL}};
   if (old + extra > INT32_MAX || !lengthen(l->context, all, LAVES__COUNT_OF(all), old, extra)) return false;
   l->vertex_count = old + extra;
   for (size_t v = old; v < l->vertex_count; v++) {

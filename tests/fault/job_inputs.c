@@ -150,10 +150,11 @@ static bool put_bad_meshes(laves_context *context, const job_place *place) {
   laves_mesh_free(mesh);
   laves_mesh_free(plain);
   return file && fclose(file) == 0 &&
-         put_text(place, "two.vtk",
-                  "# vtk DataFile Version 3.0\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\n"
-                  "CELLS 3 14\n4 0 1 2 3\n4 1 2 3 4\n3 0 2 1\nCELL_TYPES 3\n10 10 5\nCELL_DATA 3\nSCALARS region int\n"
-                  "LOOKUP_TABLE default\n4 9 6\n");
+         put_text(
+             place, "two.vtk",
+             "# vtk DataFile Version 3.0\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\n"
+             "CELLS 3 14\n4 0 1 2 3\n4 1 2 3 4\n3 0 2 1\nCELL_TYPES 3\n10 10 5\nCELL_DATA 3\nSCALARS region int\n"
+             "LOOKUP_TABLE default\n4 9 6\n");
 }
 
 bool job_place_make(job_place *place) {

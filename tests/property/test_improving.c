@@ -1,5 +1,5 @@
-/* What laves_improve() promises, on meshes made bad at random: the shape, its regions and its tags stay; angles never get worse; the
- * mesh does not depend on the number of threads. */
+/* What laves_improve() promises, on meshes made bad at random: the shape, its regions and its tags stay; angles never get worse;
+ * the mesh does not depend on the number of threads. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -223,8 +223,12 @@ static void test_touching(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cube_with_parts), cmocka_unit_test(test_plain_cube), cmocka_unit_test(test_ball),
-      cmocka_unit_test(test_ring),            cmocka_unit_test(test_motley_cube), cmocka_unit_test(test_touching),
+      cmocka_unit_test(test_cube_with_parts),
+      cmocka_unit_test(test_plain_cube),
+      cmocka_unit_test(test_ball),
+      cmocka_unit_test(test_ring),
+      cmocka_unit_test(test_motley_cube),
+      cmocka_unit_test(test_touching),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -222,7 +222,8 @@ static void test_legacy_vtk(void **state) {
       "CELLS 3 14\n4 0 1 2 3\n4 1 2 3 4\n3 0 2 1\n",
       "CELLS 4 11\nOFFSETS vtktypeint64\n0 4 8 11\nCONNECTIVITY vtktypeint64\n0 1 2 3 1 2 3 4 0 2 1\n"};
   static const char *const data[] = {
-      "POINT_DATA 5\nSCALARS heat double\nLOOKUP_TABLE default\n1 2 3 4 5\nCELL_DATA 3\nSCALARS material int 1\nLOOKUP_TABLE default\n4 9 6\n",
+      "POINT_DATA 5\nSCALARS heat double\nLOOKUP_TABLE default\n1 2 3 4 5\nCELL_DATA 3\nSCALARS material int 1\nLOOKUP_TABLE "
+      "default\n4 9 6\n",
       "CELL_DATA 3\nFIELD FieldData 2\nquality 1 3 double\n0.5 0.5 0.5\nregion 1 3 int\n4 9 6\n"};
   for (int form = 0; form < 2; form++) {
     char text[1200];
@@ -351,7 +352,8 @@ static void test_refused(void **state) {
                  "there are 1 types, but 0 cells");
   assert_refused(f, "a.inp", "*NODE\n1, 0, zero, 0\n", "line 2: expected a coordinate, not 'zero'");
   assert_refused(f, "a.inp", "*NODE\n1, 0, 0, 0\n1, 1, 0, 0\n", "node 1 is given twice");
-  assert_refused(f, "a.inp", "*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n", "element 1 uses node 2, which there is not");
+  assert_refused(f, "a.inp", "*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n",
+                 "element 1 uses node 2, which there is not");
   assert_refused(f, "a.inp", "*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 2,", "the file ends within an element");
   assert_refused(f, "a.inp", "*NODE\n1,0,0,0\n*INCLUDE, INPUT=b.inp\n", "files that include others are not read");
   assert_refused(f, "b.ele", "0 4 0\n", "b.node");
