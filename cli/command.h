@@ -6,6 +6,7 @@
 
 int command_mesh(const settings *given);
 int command_check(const settings *given);
+int command_improve(const settings *given);
 int command_info(const settings *given);
 int command_tiling(const settings *given);
 int command_view(const settings *given);

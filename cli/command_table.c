@@ -9,7 +9,7 @@
 #include "command.h"
 #include "options.h"
 
-enum { MESH = 1, CHECK = 2, INFO = 4, TILING = 8, VIEW = 16, DATA = 15, ALL = 31 };
+enum { MESH = 1, CHECK = 2, INFO = 4, TILING = 8, VIEW = 16, IMPROVE = 32, DATA = 47, ALL = 63 };
 
 const command commands[] = {
     {"mesh", "INPUT", "fill a solid with nearly regular tetrahedra",
@@ -31,6 +31,15 @@ const command commands[] = {
      "laves check part.msh --surface part.stl --features\n"
      "laves check huge.vtu --stream --memory 4G\n",
      CHECK, command_check},
+    {"improve", "MESH", "better the angles of a tetrahedral mesh of any program",
+     "MESH is what `laves check` takes. Its boundary keeps its shape, regions and tags stay, and the worst angles never get "
+     "worse\n"
+     "(docs/improve.md). Exit code 2: it cannot be read, or is not valid; 3: a window asked for with --window or\n"
+     "--volume-length is missed.",
+     "laves improve part.msh -o better.msh\n"
+     "laves improve part.1.ele -o better.vtu --window 25,145\n"
+     "laves improve scan.mesh -o better.mesh --tolerance 0.01 --budget 60\n",
+     IMPROVE, command_improve},
     {"info", "INPUT", "say what an input is, what is wrong with it, and what meshing will cost",
      "INPUT is what `laves mesh` takes. Nothing is meshed and nothing is written.", "laves info bunny.obj --tets 1M\n", INFO,
      command_info},
@@ -58,6 +67,7 @@ const size_t command_count = sizeof commands / sizeof commands[0];
 #define IN_TILING "Tiling"
 #define IN_SHAPE "Shape"
 #define IN_CHECK "Check"
+#define IN_IMPROVE "Improvement"
 #define IN_PICTURE "Picture"
 #define IN_FILES "Files"
 #define IN_RUN "Run"
@@ -164,6 +174,19 @@ const option option_rows[] = {
      "asked range of every dihedral angle (LO 0..60, HI 80..180); exit code 3 when it or --volume-length is missed"},
     {"volume-length", 0, MESH, IN_SHAPE, OPTION_REAL, "Q", NULL, false, 0, 0.8, "0.6", MEMBER(volume_length), 0,
      "asked volume-length ratio of every tetrahedron; exit code 3 when it is missed"},
+    {"window", 0, IMPROVE, IN_IMPROVE, OPTION_WINDOW, "LO,HI", "degrees", false, 0, 180, "30,140", MEMBER(window), 0,
+     "what every dihedral angle is to be brought into (LO 0..60, HI 80..180); when given, exit code 3 if it is missed"},
+    {"volume-length", 0, IMPROVE, IN_IMPROVE, OPTION_REAL, "Q", NULL, false, 0, 0.8, "not asked", MEMBER(volume_length), 0,
+     "lowest volume-length ratio that is asked for besides; when given, exit code 3 if it is missed"},
+    {"tolerance", 0, IMPROVE, IN_IMPROVE, OPTION_REAL, "D", "units of the mesh", false, 0, INFINITY, "0", MEMBER(tolerance), 0,
+     "how far the boundary may come to be from where it was: what is flat within that counts as flat; 0: vertices move in flat "
+     "parts and along straight edges only"},
+    {"fixed-boundary", 0, IMPROVE, IN_IMPROVE, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(fixed_boundary), 0,
+     "leave vertices and triangles of the boundary as they are"},
+    {"passes", 0, IMPROVE, IN_IMPROVE, OPTION_COUNT, "N", "passes", false, 1, 1000, "as many as help", MEMBER(passes), 0,
+     "most passes over what is outside the window; the mesh is the same on any machine"},
+    {"budget", 0, IMPROVE, IN_IMPROVE, OPTION_REAL, "SECONDS", "seconds", true, 0, 1e9, "no limit", MEMBER(budget), 0,
+     "when to stop improving and write what there is; with it the mesh depends on the machine"},
     {"cut", 0, VIEW, IN_PICTURE, OPTION_WORD, "PLANE", NULL, false, 0, 0, NULL, MEMBER(cut), 0,
      "leave out what lies in front of a plane: x, y or z through the middle, or a,b,c,d for what has a corner with "
      "a x + b y + c z > d"},
@@ -189,13 +212,15 @@ const option option_rows[] = {
      "write the tiling as a mesh; repeat it for several formats"},
     {"output", 'o', VIEW, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, OUTPUT_CAPACITY, NULL, MEMBER(outputs), 0,
      "where the picture goes (PNG); needed"},
-    {"format", 0, MESH | TILING, IN_FILES, OPTION_FORMAT, "NAME", NULL, false, 0, 0, "from the extension", MEMBER(format), 0,
-     "format of the one output: "},
-    {"ascii", 0, MESH | TILING, IN_FILES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(ascii), 0,
+    {"output", 'o', IMPROVE, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, OUTPUT_CAPACITY, NULL, MEMBER(outputs), 0,
+     "where the improved mesh goes; needed; repeat it for several formats"},
+    {"format", 0, MESH | TILING | IMPROVE, IN_FILES, OPTION_FORMAT, "NAME", NULL, false, 0, 0, "from the extension",
+     MEMBER(format), 0, "format of the one output: "},
+    {"ascii", 0, MESH | TILING | IMPROVE, IN_FILES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(ascii), 0,
      "text instead of binary, where the format has both"},
-    {"compress", 0, MESH | TILING, IN_FILES, OPTION_COUNT, "N", NULL, false, 0, 9, "1", MEMBER(compress), 0,
+    {"compress", 0, MESH | TILING | IMPROVE, IN_FILES, OPTION_COUNT, "N", NULL, false, 0, 9, "1", MEMBER(compress), 0,
      "compression of VTU, 0 none to 9 smallest"},
-    {"boundary", 0, MESH, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(boundary), 0,
+    {"boundary", 0, MESH | IMPROVE, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(boundary), 0,
      "also write the boundary surface (.stl, .obj, .ply, .off)"},
     {"regions", 0, MESH, IN_FILES, OPTION_REGIONS, "HOW", NULL, false, 0, 0, "none", MEMBER(regions), 0,
      "what tetrahedra are told apart by: none, or parts: the closed parts of the input surface that contain them, the innermost "
@@ -206,7 +231,7 @@ const option option_rows[] = {
      "make points and tetrahedra while they are written, for meshes larger than memory (docs/streaming.md): VTU, Gmsh, VTKHDF, "
      "VTK, XDMF, "
      "NPZ; one size and no regions, no certificate"},
-    {"certificate", 0, MESH, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0,
+    {"certificate", 0, MESH | IMPROVE, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0,
      "the first output's name with .certificate.json for its extension", MEMBER(certificate), 0,
      "where the certificate goes (docs/certificate.md); none: write none and leave the final check out"},
     {"certificate", 0, CHECK, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(certificate), 0,
@@ -216,8 +241,8 @@ const option option_rows[] = {
     {"json", 0, DATA, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(json), 0,
      "write all facts as JSON (docs/json.md); - is the standard output"},
 
-    {"threads", 0, MESH | CHECK | INFO, IN_RUN, OPTION_COUNT, "N", NULL, false, 1, 4096, "one per core", MEMBER(threads), 0,
-     "threads to use; the mesh never depends on it"},
+    {"threads", 0, MESH | CHECK | INFO | IMPROVE, IN_RUN, OPTION_COUNT, "N", NULL, false, 1, 4096, "one per core",
+     MEMBER(threads), 0, "threads to use; the mesh never depends on it"},
     {"memory", 0, ALL, IN_RUN, OPTION_BYTES, "SIZE", "bytes", false, 1, 1e18, "what the machine has", MEMBER(memory), 0,
      "most memory to hold, such as 500M or 2G (powers of 1024); exit code 4 when it is not enough, before meshing begins where "
      "that can "

@@ -60,6 +60,9 @@ typedef struct settings {
   option_texts features;
   double feature_angle; /* degrees */
   bool feature_tags, no_keep_thin;
+  double tolerance, budget; /* units of the mesh; seconds, 0: no limit */
+  bool fixed_boundary;
+  int64_t passes;  /* 0: not given */
   const char *cut; /* NULL: not given */
   const char *color, *view, *up, *pixels, *background;
   double lines, creases; /* pixels */

@@ -1,7 +1,7 @@
 /* laves: near-regular tetrahedral meshes of any solid.  The public interface, in order of use:
  *
  *   version -> results and errors -> context -> domain -> sizing -> features -> options -> generate -> mesh -> check ->
- *   certificate -> files
+ *   improve -> certificate -> files
  *
  * Conventions, everywhere: signed distance negative inside; tetrahedra positive, det[b-a, c-a, d-a] > 0; boundary
  * triangles face outwards; indices from 0; coordinates in the units of the input; angles in degrees.
@@ -765,6 +765,62 @@ typedef struct laves_feature_check {
 LAVES_API laves_result laves_check_features(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
                                             const laves_feature_options *options, laves_feature_check *check,
                                             laves_feature_place *places, size_t capacity, size_t *count, laves_error *error);
+
+/* ---- improve ---------------------------------------------------------------------------------------------------- */
+
+/// How a mesh of any program is improved. From laves_improve_options_default(), then changed.
+typedef struct laves_improve_options {
+  double min_dihedral;   ///< asked window for every dihedral angle, degrees; default 30, range 0..60
+  double max_dihedral;   ///< default 140, range 80..180. Tetrahedra inside the window are only changed for the sake of others.
+  double volume_length;  ///< asked volume-length ratio sqrt(2) 6V / rms(edge)^3 as well, 0..0.8; default 0: not asked
+  double tolerance;      ///< how far the boundary, and borders between regions, may come to be from where they were, units of the
+                         ///< mesh; default 0: vertices move in flat parts and along straight edges only, so the shape is the
+                         ///< same but for rounding (1e-10 of the diagonal). Borders of flat parts stay in any case.
+  bool fixed_boundary;   ///< true: vertices and triangles of the boundary stay as they are; default false
+  size_t passes;    ///< most passes over the bad tetrahedra; the same number yields the same mesh; 0, the default: as many as
+                    ///< help, about 25
+  double seconds;   ///< when to stop and return what there is, wall seconds from the call; the one option with which the result
+                    ///< depends on the machine; 0, the default: never
+  uint32_t cookie;  ///< set by laves_improve_options_default(), checked by laves_improve()
+} laves_improve_options;
+
+LAVES_API laves_improve_options laves_improve_options_default(void);
+
+/// What was done: filled by laves_improve().
+typedef struct laves_improve_report {
+  laves_check before, after;  ///< as laves_check_mesh() finds the two meshes
+  size_t outside_before,
+      outside_after;      ///< tetrahedra outside the asked window. Angles at edges between two flat parts of the
+                          ///< boundary that one tetrahedron fills alone count, too, though nothing can change them.
+  size_t patches;         ///< flat parts of the boundary and of borders between regions; of a curved surface
+                          ///< every triangle is one
+  size_t fixed_vertices;  ///< vertices of the boundary and the borders that could not move,
+  size_t crease_vertices, flat_vertices;  ///< that could along a straight edge, and in a flat part
+  double sharpest;   ///< least angle inside the mesh between two flat parts of its boundary that meet, degrees: no mesh with this
+                     ///< boundary has a larger smallest angle; 180: there are none
+  bool out_of_time;  ///< it ended because of laves_improve_options.seconds
+  bool kept_as_it_was;               ///< the result was no better and was given up: the mesh returned is a copy
+  double wall_seconds, cpu_seconds;  ///< of the call, with both checks
+  size_t peak_bytes;                 ///< most memory that the context held at once
+} laves_improve_report;
+
+/// Improves a tetrahedral mesh of any program: moves vertices, removes and splits edges, flips faces and contracts edges until
+/// all dihedral angles are inside a window, or nothing helps. Regions, the tags of boundary triangles and their names are kept:
+/// borders between regions and between tags are kept as the boundary is. The worst dihedral angles, smallest and largest, are
+/// never worse than before. Vertices that do not move keep their coordinates to the last bit; vertices that no tetrahedron uses
+/// are dropped.
+/// @param mesh      valid but for its boundary, which may touch itself (laves_check.inverted_tets, bad_indices and
+///                  nonconforming_faces are 0); read only; of `context`; not streamed
+/// @param options   copied; NULL: the defaults
+/// @param improved  out: owned by the caller, free with laves_mesh_free(); NULL on failure
+/// @param report    out, optional
+/// @param error     out, optional
+/// @return LAVES_OK; LAVES_TARGET_MISSED when the mesh is valid but tetrahedra are outside the window (see report);
+///         LAVES_ERROR_OPTION, LAVES_ERROR_INPUT (the mesh is not valid), LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED
+/// Cost: some 20 to 500 microseconds of one processor for each tetrahedron outside the window at the start; memory about 300
+/// bytes a tetrahedron. The result is the same for any number of threads, but with options->seconds.
+LAVES_API laves_result laves_improve(laves_context *context, const laves_mesh *mesh, const laves_improve_options *options,
+                                     laves_mesh **improved, laves_improve_report *report, laves_error *error);
 
 /* ---- certificate -------------------------------------------------------------------------------------------------- */
 

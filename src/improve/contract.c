@@ -52,7 +52,7 @@ static bool find_ring(const laves__layer *layer, int32_t a, int32_t b, ring *r) 
 
 /* Whether v and w are joined by a boundary edge; v moves. */
 static bool is_boundary_edge(const laves__layer *layer, int32_t v, int32_t w) {
-  if (layer->depth[v] != 0 || layer->depth[w] != 0) return false;
+  if (layer->depth[v] != 0 || (layer->depth[w] != 0 && !layer->patch)) return false;
   const laves__star *star = &layer->star[v];
   for (int i = 0; i < star->count; i++) {
     const int32_t t = star->tet[i];
@@ -122,11 +122,30 @@ static bool keeps_topology(const laves__layer *layer, int32_t a, int32_t b, cons
   return true;
 }
 
+/* Where the boundary is given: the two faces of a ring tet that become one, of which one may be on the boundary; then the tet
+ * beyond the other has it. False where both are, or memory is short. */
+static bool hand_on_patches(laves__layer *layer, int32_t a, int32_t b, const ring *r, laves__journal *j) {
+  for (int i = 0; i < r->tet_count; i++) {
+    const int32_t t = r->tet[i];
+    const int at_a = laves__layer_corner(layer, t, a), at_b = laves__layer_corner(layer, t, b);
+    const int32_t of_a = layer->patch[t][at_b], of_b = layer->patch[t][at_a]; /* of the face that holds it */
+    if (of_a == LAVES__NO_PATCH && of_b == LAVES__NO_PATCH) continue;
+    if (of_a != LAVES__NO_PATCH && of_b != LAVES__NO_PATCH) return false;
+    const int32_t beyond = laves__layer_across(layer, t, of_a != LAVES__NO_PATCH ? at_a : at_b);
+    if (beyond < 0 || !laves__journal_tet(j, layer, beyond)) return false;
+    for (int k = 0; k < 4; k++)
+      if (laves__layer_corner(layer, t, layer->tet[beyond][k]) < 0)
+        layer->patch[beyond][k] = of_a != LAVES__NO_PATCH ? of_a : of_b;
+  }
+  return true;
+}
+
 /* Merges b into a; everything changed is in the journal first. */
 static bool merge(laves__layer *layer, int32_t a, int32_t b, const ring *r, laves__journal *j) {
   if (!laves__journal_star(j, layer, a) || !laves__journal_star(j, layer, b)) return false;
   for (int i = 0; i < r->vertex_count; i++)
     if (laves__layer_moves(layer, r->vertex[i]) && !laves__journal_star(j, layer, r->vertex[i])) return false;
+  if (layer->patch && !hand_on_patches(layer, a, b, r, j)) return false;
   for (int i = 0; i < r->tet_count; i++) {
     const int32_t t = r->tet[i];
     if (!laves__journal_tet(j, layer, t)) return false;

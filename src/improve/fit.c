@@ -42,6 +42,7 @@ void laves__fit_face(const laves__frame *frame, const laves__layer *layer, const
 }
 
 void laves__fit_star(const laves__frame *frame, const laves__layer *layer, int32_t vertex, laves__fit *fit) {
+  if (layer->patch) return; /* what may change lies in planes and stays in them */
   const laves__star *star = &layer->star[vertex];
   for (int i = 0; i < star->count; i++) {
     const int32_t t = star->tet[i];

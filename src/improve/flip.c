@@ -15,11 +15,13 @@
  * [klingner2007]. */
 #include "improve/flip.h"
 
+#include <string.h>
+
 #include "improve/fit.h"
 #include "improve/smooth.h"
 #include "mesh/mesh.h"
 
-enum { RING_MAX = 8, TETS_MAX = 2 * (RING_MAX - 2), OLD_MAX = RING_MAX };
+enum { RING_MAX = 12, RING_USUAL = 8, TETS_MAX = 2 * (RING_MAX - 2), OLD_MAX = RING_MAX };
 static const double least_gain = 1e-3; /* of quality */
 
 /* A change that is thought of: the tets that go, those that come, and the worst quality then. */
@@ -27,6 +29,8 @@ typedef struct change {
   int old_count, fresh_count;
   int32_t old[OLD_MAX], fresh[TETS_MAX][4];
   double quality[TETS_MAX], worst, before;
+  /* Where the boundary is given: the patch of the faces that come to it, their edge, and the one that goes from it. */
+  int32_t opened, opened_edge[2], gone_edge[2];
 } change;
 
 typedef struct flipping {
@@ -66,11 +70,12 @@ static void other_corners(const int32_t t[4], int32_t a, int32_t b, int32_t *p, 
 static bool find_ring(const laves__layer *layer, int32_t a, int32_t b, ring *r, change *c) {
   int32_t from[OLD_MAX], to[OLD_MAX];
   const laves__star *star = &layer->star[a];
+  const int most = layer->patch ? RING_MAX : RING_USUAL; /* the lattice has no longer ones that are worth it */
   c->old_count = 0;
   for (int i = 0; i < star->count; i++) {
     const int32_t t = star->tet[i];
     if (laves__layer_corner(layer, t, b) < 0) continue;
-    if (c->old_count == OLD_MAX) return false;
+    if (c->old_count == most) return false;
     other_corners(layer->tet[t], a, b, &from[c->old_count], &to[c->old_count]);
     c->old[c->old_count++] = t;
   }
@@ -82,7 +87,7 @@ static bool find_ring(const laves__layer *layer, int32_t a, int32_t b, ring *r, 
   }
   r->count = 0;
   for (int at = first, used = 0; used < c->old_count; used++) {
-    if (r->count == RING_MAX) return false;
+    if (r->count == most) return false;
     r->vertex[r->count++] = from[at];
     const int32_t next = to[at];
     int onwards = -1;
@@ -90,7 +95,7 @@ static bool find_ring(const laves__layer *layer, int32_t a, int32_t b, ring *r, 
       if (from[j] == next) onwards = j;
     if (used == c->old_count - 1) {
       r->open = next != from[first];
-      if (r->open && r->count == RING_MAX) return false;
+      if (r->open && r->count == most) return false;
       if (r->open) r->vertex[r->count++] = next;
       break;
     }
@@ -181,10 +186,21 @@ static bool has_edge(const laves__layer *layer, int32_t v, int32_t w) {
   return false;
 }
 
+/* Where the boundary is given: no border between regions passes through the edge, and a boundary edge lies in one patch. */
+static bool may_go(const flipping *f, int32_t a, int32_t b, const ring *r, change *c) {
+  const int faces = laves__given_edge(f->layer, a, b, &c->opened);
+  c->gone_edge[0] = a;
+  c->gone_edge[1] = b;
+  c->opened_edge[0] = r->vertex[0];
+  c->opened_edge[1] = r->vertex[r->count - 1];
+  return r->open ? faces == 2 && c->opened != LAVES__NO_PATCH : faces == 0;
+}
+
 /* Whether the two faces that come to the boundary may. */
 static bool may_open(const flipping *f, int32_t a, int32_t b, const ring *r) {
   const laves__layer *l = f->layer;
   const int32_t v = r->vertex[0], w = r->vertex[r->count - 1];
+  if (l->patch) return laves__layer_moves(l, v) ? !has_edge(l, v, w) : laves__layer_moves(l, w) && !has_edge(l, w, v);
   if (l->depth[a] != 0 || l->depth[b] != 0 || l->depth[v] != 0 || l->depth[w] != 0 || has_edge(l, v, w)) return false;
   if (laves__is_crease_edge(f->frame, l, a, b)) return false;
   const int32_t upper[3] = {a, w, v}, lower[3] = {b, v, w};
@@ -204,6 +220,7 @@ static bool without_edge(const flipping *f, int32_t a, int32_t b, change *c) {
     b = swap;
   }
   if (!laves__layer_moves(f->layer, a) || !find_ring(f->layer, a, b, &r, c)) return false;
+  if (f->layer->patch && !may_go(f, a, b, &r, c)) return false;
   measure_old(f, c);
   const double needed = fmax(c->before + least_gain, LAVES__FLAT);
   triangulate(f, a, b, &r, needed, &t);
@@ -220,7 +237,8 @@ static bool without_face(const flipping *f, int32_t tet, int corner, change *c) 
   const uint8_t *face = laves__tet_face[corner];
   bool moves = false;
   for (int k = 0; k < 3; k++) moves |= laves__layer_moves(layer, t[face[k]]);
-  if (!moves) return false;
+  if (!moves || (layer->patch && layer->patch[tet][corner] != LAVES__NO_PATCH)) return false;
+  c->opened = LAVES__NO_PATCH;
   const int32_t beyond = laves__layer_across(layer, tet, corner);
   if (beyond < 0) return false;
   int32_t b = -1;
@@ -252,10 +270,10 @@ static bool has_all(const int32_t t[4], const int32_t *vertices, int count) {
 static bool is_elsewhere(const flipping *f, const change *c, const int32_t *vertices, int count) {
   const laves__layer *layer = f->layer;
   int lead = 0;
-  while (lead < count && !laves__layer_moves(layer, vertices[lead])) lead++;
-  if (lead == count) return false; /* deep inside, where nothing overlaps */
   for (int i = 0; i < c->old_count; i++)
     if (has_all(layer->tet[c->old[i]], vertices, count)) return false;
+  while (lead < count && !laves__layer_moves(layer, vertices[lead])) lead++;
+  if (lead == count) return layer->patch != NULL; /* deep inside, where nothing overlaps; in a given mesh nobody knows */
   const laves__star *star = &layer->star[vertices[lead]];
   for (int i = 0; i < star->count; i++)
     if (has_all(layer->tet[star->tet[i]], vertices, count)) return true;
@@ -300,10 +318,37 @@ static bool join_stars(laves__layer *layer, int32_t tet, laves__journal *j) {
   return true;
 }
 
+/* The patch of a face of a fresh tet: that of the old one with its corners, or of what comes to the boundary. */
+static int32_t patch_of(const laves__layer *layer, const change *c, const int32_t face[3]) {
+  for (int i = 0; i < c->old_count; i++) {
+    const int32_t *t = layer->tet[c->old[i]], *patch = layer->patch[c->old[i]];
+    if (!has_all(t, face, 3)) continue;
+    for (int k = 0; k < 4; k++)
+      if (t[k] != face[0] && t[k] != face[1] && t[k] != face[2] && patch[k] != LAVES__NO_PATCH) return patch[k];
+  }
+  if (c->opened == LAVES__NO_PATCH) return LAVES__NO_PATCH;
+  /* Its corners are the ends of the new boundary edge and one of the edge that goes. */
+  int opened = 0, gone = 0;
+  for (int k = 0; k < 3; k++) {
+    opened += face[k] == c->opened_edge[0] || face[k] == c->opened_edge[1];
+    gone += face[k] == c->gone_edge[0] || face[k] == c->gone_edge[1];
+  }
+  return opened == 2 && gone == 1 ? c->opened : LAVES__NO_PATCH;
+}
+
+static void find_patches(const laves__layer *layer, const change *c, int32_t patch[TETS_MAX][4]) {
+  for (int i = 0; i < c->fresh_count; i++)
+    for (int k = 0; k < 4; k++) {
+      const uint8_t *face = laves__tet_face[k];
+      patch[i][k] = patch_of(layer, c, (const int32_t[]){c->fresh[i][face[0]], c->fresh[i][face[1]], c->fresh[i][face[2]]});
+    }
+}
+
 /* False, with all as it was, when memory is short. */
 static bool make(laves__layer *layer, const change *c, laves__slots *slots, laves__journal *j) {
-  int32_t place[TETS_MAX];
+  int32_t place[TETS_MAX], patch[TETS_MAX][4];
   int taken = 0;
+  if (layer->patch) find_patches(layer, c, patch);
   for (int i = 0; i < c->fresh_count; i++) place[i] = i < c->old_count ? c->old[i] : slots->tet[slots->count - 1 - taken++];
   laves__journal_clear(j);
   for (int i = 0; i < c->old_count; i++)
@@ -314,6 +359,8 @@ static bool make(laves__layer *layer, const change *c, laves__slots *slots, lave
   bool joined = true;
   for (int i = 0; i < c->fresh_count && joined; i++) {
     for (int k = 0; k < 4; k++) layer->tet[place[i]][k] = c->fresh[i][k];
+    if (layer->patch) memcpy(layer->patch[place[i]], patch[i], sizeof patch[i]);
+    if (layer->region) layer->region[place[i]] = layer->region[c->old[0]];
     layer->quality[place[i]] = c->quality[i];
     joined = join_stars(layer, place[i], j);
   }

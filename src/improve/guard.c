@@ -47,6 +47,40 @@ static bool same_patch(const laves__frame *frame, int32_t a, int32_t b) {
   return a == b || (a != LAVES__NO_FEATURE && b != LAVES__NO_FEATURE && laves__patches_join(frame->features, a, b));
 }
 
+int laves__given_edge(const laves__layer *layer, int32_t a, int32_t b, int32_t *patch) {
+  const laves__star *star = &layer->star[a];
+  int count = 0;
+  *patch = LAVES__NO_PATCH;
+  for (int i = 0; i < star->count; i++) {
+    const int32_t t = star->tet[i];
+    if (laves__layer_corner(layer, t, b) < 0) continue;
+    for (int k = 0; k < 4; k++) {
+      const int32_t p = layer->patch[t][k];
+      if (p == LAVES__NO_PATCH || layer->tet[t][k] == a || layer->tet[t][k] == b) continue;
+      *patch = count++ == 0 || p == *patch ? p : LAVES__NO_PATCH;
+    }
+  }
+  return count;
+}
+
+/* Whether all around a vertex is one region. */
+static bool within_region(const laves__layer *layer, int32_t vertex) {
+  const laves__star *star = &layer->star[vertex];
+  for (int i = 1; layer->region && i < star->count; i++)
+    if (layer->region[star->tet[i]] != layer->region[star->tet[0]]) return false;
+  return true;
+}
+
+/* Borders between regions keep their vertices. Around one in a patch all faces are of that patch, so it may go anywhere along
+ * them; one on a crease along that. */
+static bool given_may_merge(const laves__layer *layer, int32_t gone, int32_t into) {
+  int32_t patch;
+  const uint8_t kind = layer->hold[gone].kind;
+  if (kind == LAVES__HOLD_CORNER || !within_region(layer, gone)) return false;
+  const int faces = laves__given_edge(layer, gone, into, &patch);
+  return faces == 2 && (kind == LAVES__HOLD_PATCH) == (patch != LAVES__NO_PATCH);
+}
+
 bool laves__is_crease_edge(const laves__frame *frame, const laves__layer *layer, int32_t a, int32_t b) {
   if (!layer->hold) return false;
   const int32_t crease = laves__holds_crease(frame->features, layer->hold[a], layer->hold[b]);
@@ -78,7 +112,7 @@ static int expected_borders(const laves__features *f, laves__hold hold) {
 
 int laves__feature_faults(const laves__frame *frame, const laves__layer *layer, int32_t vertex) {
   fan f;
-  if (!layer->hold || layer->depth[vertex] != 0) return 0;
+  if (!layer->hold || layer->patch || layer->depth[vertex] != 0) return 0;
   const laves__hold hold = layer->hold[vertex];
   if (!find_fan(frame, layer, vertex, &f)) return FACES_MAX;
   int faults = 0, borders = 0;
@@ -106,7 +140,7 @@ double laves__crease_sag(const laves__frame *frame, const laves__layer *layer, i
   const laves__star *star = &layer->star[vertex];
   const double scale = laves__layer_scale(layer, vertex);
   double sag = 0;
-  if (laves__layer_hold(layer, vertex).kind < LAVES__HOLD_CREASE) return 0;
+  if (layer->patch || laves__layer_hold(layer, vertex).kind < LAVES__HOLD_CREASE) return 0; /* given ones are straight */
   for (int i = 0; i < star->count; i++)
     for (int k = 0; k < 4; k++) {
       const int32_t w = layer->tet[star->tet[i]][k];
@@ -125,6 +159,7 @@ double laves__crease_sag(const laves__frame *frame, const laves__layer *layer, i
 
 bool laves__may_merge(const laves__frame *frame, const laves__layer *layer, int32_t gone, int32_t into) {
   if (!layer->hold || layer->depth[gone] != 0) return true;
+  if (layer->patch) return given_may_merge(layer, gone, into);
   const laves__hold from = layer->hold[gone], to = layer->hold[into];
   switch (from.kind) {
     case LAVES__HOLD_CORNER:
@@ -136,6 +171,33 @@ bool laves__may_merge(const laves__frame *frame, const laves__layer *layer, int3
     default:
       return to.kind == LAVES__HOLD_SURFACE;
   }
+}
+
+/* The cosine of the angle inside a tet between the faces opposite two corners. */
+static double face_cosine(const laves__vec3 p[4], int i, int j) {
+  laves__vec3 n[2];
+  for (int k = 0; k < 2; k++) {
+    const uint8_t *face = laves__tet_face[k ? j : i];
+    n[k] = v3_unit(v3_cross(v3_sub(p[face[1]], p[face[0]]), v3_sub(p[face[2]], p[face[0]])));
+  }
+  return -v3_dot(n[0], n[1]);
+}
+
+unsigned laves__given_fixed_edges(double sharp_cosine, const laves__layer *layer, int32_t tet) {
+  const int32_t *patch = layer->patch[tet];
+  unsigned fixed = 0;
+  int count = 0;
+  for (int k = 0; k < 4; k++) count += patch[k] != LAVES__NO_PATCH;
+  if (count < 2) return 0;
+  laves__vec3 p[4];
+  laves__layer_points(layer, tet, p);
+  for (int e = 0; e < 6; e++) {
+    const uint8_t *others = laves__tet_edge[5 - e]; /* the faces at the edge are opposite the two other corners */
+    if (patch[others[0]] == LAVES__NO_PATCH || patch[others[1]] == LAVES__NO_PATCH || patch[others[0]] == patch[others[1]])
+      continue;
+    if (face_cosine(p, others[0], others[1]) > sharp_cosine) fixed |= 1u << e;
+  }
+  return fixed;
 }
 
 unsigned laves__fixed_edges(const laves__features *f, double sharper_than, const laves__layer *layer, int32_t tet) {

@@ -12,6 +12,10 @@ int32_t laves__layer_face_patch(const laves__frame *frame, const laves__layer *l
  * is on both sides of the crease). Then it must not go. */
 bool laves__is_crease_edge(const laves__frame *frame, const laves__layer *layer, int32_t a, int32_t b);
 
+/* Of a layer whose boundary is given: how many faces of the boundary, or of borders between regions (these are seen from both
+ * sides), are at an edge, of whose ends the first moves. *patch: theirs, or LAVES__NO_PATCH where it is not one. */
+int laves__given_edge(const laves__layer *layer, int32_t a, int32_t b, int32_t *patch);
+
 /* What is wrong with features around a vertex: illegal faces, edges between patches whose ends share no crease, and the
  * difference between the number of edges between patches and what it should be (none on a patch, two on a crease, as many as
  * creases end at a corner). Zero where there are no features. */
@@ -30,5 +34,7 @@ bool laves__may_merge(const laves__frame *frame, const laves__layer *layer, int3
 /* Edges of a tet on creases sharper than an angle that no other tet shares: the input fixes their dihedral angles. Bit e: edge e
  * of laves__tet_edge. */
 unsigned laves__fixed_edges(const laves__features *features, double sharper_than, const laves__layer *layer, int32_t tet);
+/* The same where the boundary is given; `sharp_cosine` is the cosine of the angle. */
+unsigned laves__given_fixed_edges(double sharp_cosine, const laves__layer *layer, int32_t tet);
 
 #endif

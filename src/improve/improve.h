@@ -26,6 +26,9 @@ typedef struct laves__window {
   double held_min, held_max;         /* all tets are inside these angles and stay so; 0 and 180: nothing is held */
   bool again;                        /* after a first time: without the Laplace start */
   double rescue_min, rescue_max;     /* with all patience, but only what is outside these, or nearly; 0 and 180: all */
+  size_t passes;                     /* at most so many; 0: as many as help */
+  double deadline;                   /* of laves__wall_seconds(), when to stop; 0: never */
+  size_t block_vertices;             /* as laves__blocks_begin() takes them; for tests */
   bool brief;                        /* the solid is rougher than the size: few passes, and only the worst get more */
 } laves__window;
 

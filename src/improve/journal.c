@@ -36,6 +36,7 @@ bool laves__journal_tet(laves__journal *j, const laves__layer *layer, int32_t t)
   entry->tet = t;
   entry->quality = layer->quality[t];
   memcpy(entry->corner, layer->tet[t], sizeof entry->corner);
+  if (layer->patch) memcpy(entry->patch, layer->patch[t], sizeof entry->patch);
   return true;
 }
 
@@ -68,6 +69,7 @@ void laves__journal_undo(laves__journal *j, laves__layer *layer) {
   for (size_t i = j->tet_count; i-- > 0;) {
     const laves__tet_entry *e = &j->tet[i];
     memcpy(layer->tet[e->tet], e->corner, sizeof e->corner);
+    if (layer->patch) memcpy(layer->patch[e->tet], e->patch, sizeof e->patch);
     layer->quality[e->tet] = e->quality;
   }
   for (size_t i = j->star_count; i-- > 0;) {

@@ -13,7 +13,7 @@ typedef struct laves__vertex_entry {
 } laves__vertex_entry;
 
 typedef struct laves__tet_entry {
-  int32_t tet, corner[4];
+  int32_t tet, corner[4], patch[4];
   double quality;
 } laves__tet_entry;
 

@@ -26,6 +26,7 @@ typedef struct laves__measure {
   double held_high;
   const laves__features *sharp; /* creases of which some are sharper than the next; NULL: none */
   double sharper_than;          /* degrees */
+  double sharp_cosine;          /* of that, where the boundary is given and has such edges; 0: it has none */
 } laves__measure;
 
 laves__measure laves__measure_of(const laves__window *window);
@@ -37,6 +38,7 @@ static const uint8_t laves__face_pair[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {
 static inline bool laves__is_fixed(unsigned fixed, int pair) { return fixed >> (5 - pair) & 1; }
 
 static inline unsigned laves__measure_fixed(const laves__measure *m, const laves__layer *layer, int32_t tet) {
+  if (m->sharp_cosine != 0) return laves__given_fixed_edges(m->sharp_cosine, layer, tet);
   return m->sharp ? laves__fixed_edges(m->sharp, m->sharper_than, layer, tet) : 0;
 }
 

@@ -1,5 +1,5 @@
-/* Space is cut in blocks, coloured by the parity of their coordinates; see improve.c for why. All threads look for bad tets, chunk
- * by chunk of the layer, first to count, then to list them, and sort the list. */
+/* Space is cut in blocks, coloured by the parity of their coordinates; see improve.c for why. All threads look for bad tets,
+ * chunk by chunk of the layer, first to count, then to list them, and sort the list. */
 #include "improve/patients.h"
 
 #include <stdatomic.h>
@@ -20,6 +20,7 @@ bool laves__spans_wall(const laves__layer *layer, int32_t tet) {
 
 bool laves__is_bad(const laves__layer *layer, const laves__admission *admission, int32_t tet) {
   if (layer->tet[tet][0] < 0 || !(layer->quality[tet] < admission->below)) return false;
+  if (admission->near && !admission->near[tet]) return false;
   return !admission->thin || layer->quality[tet] < wall_admit || !laves__spans_wall(layer, tet);
 }
 
@@ -44,6 +45,11 @@ static laves__patient admit(const laves__layer *layer, int32_t tet) {
   return item;
 }
 
+/* In a given mesh blocks are independent: all are of one colour. */
+static laves__patient admit_given(const laves__blocks *given, const laves__layer *layer, int32_t tet) {
+  return (laves__patient){.block = {laves__blocks_of(given, layer, tet)}, .tet = tet, .quality = layer->quality[tet]};
+}
+
 static bool same_block(const laves__patient *a, const laves__patient *b) {
   return a->level == b->level && a->block[0] == b->block[0] && a->block[1] == b->block[1] && a->block[2] == b->block[2];
 }
@@ -62,22 +68,29 @@ static int by_level_colour_block_quality(const void *left, const void *right) {
 typedef struct search {
   const laves__layer *layer;
   const laves__admission *admission;
+  const laves__blocks *given;
   size_t *found;        /* [chunks] how many each has; then where its items begin */
   laves__patient *item; /* NULL while they are counted */
+  atomic_size_t bad;    /* counted, too, but not listed, are those that stand still */
 } search;
 
 static void look(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
-  const search *s = user;
+  search *s = user;
   for (size_t chunk = begin; chunk < end; chunk++) {
     const size_t first = chunk * CHUNK, rest = s->layer->tet_count - first, last = first + (rest < CHUNK ? rest : CHUNK);
-    size_t count = 0;
+    size_t count = 0, bad = 0;
     for (size_t t = first; t < last; t++) {
       if (!laves__is_bad(s->layer, s->admission, (int32_t)t)) continue;
-      if (s->item) s->item[s->found[chunk] + count] = admit(s->layer, (int32_t)t);
+      bad++;
+      if (s->given && laves__blocks_of(s->given, s->layer, (int32_t)t) < 0) continue;
+      if (s->item)
+        s->item[s->found[chunk] + count] = s->given ? admit_given(s->given, s->layer, (int32_t)t) : admit(s->layer, (int32_t)t);
       count++;
     }
-    if (!s->item) s->found[chunk] = count;
+    if (s->item) continue;
+    s->found[chunk] = count;
+    atomic_fetch_add(&s->bad, bad);
   }
 }
 
@@ -104,14 +117,17 @@ static bool find_blocks(laves_context *context, laves__patients *p) {
   return true;
 }
 
-bool laves__patients_list(const laves__layer *layer, const laves__admission *admission, laves__patients *p) {
+bool laves__patients_list(const laves__layer *layer, const laves__admission *admission, const laves__blocks *given,
+                          laves__patients *p) {
   laves_context *context = layer->context;
   const size_t chunks = chunks_of(layer);
-  search s = {.layer = layer, .admission = admission};
-  p->count = p->block_count = 0;
+  search s = {.layer = layer, .admission = admission, .given = given};
+  atomic_init(&s.bad, 0);
+  p->count = p->block_count = p->bad = 0;
   s.found = laves__alloc(context, chunks + 1, sizeof *s.found);
   if (!s.found) return false;
   bool memory = true, there = laves__parallel_for(context, NULL, chunks, 1, look, &s);
+  p->bad = atomic_load(&s.bad);
   if (there) memory = find_room(&s, p);
   if (there && memory && p->count > 0) {
     s.item = p->item;
@@ -119,7 +135,7 @@ bool laves__patients_list(const laves__layer *layer, const laves__admission *adm
             laves__sort(context, p->item, p->item + p->count, p->count, sizeof *p->item, by_level_colour_block_quality);
   }
   laves__free(context, s.found, chunks + 1, sizeof *s.found);
-  if (!there) p->count = 0;
+  if (!there) p->count = p->bad = 0;
   return memory && find_blocks(context, p);
 }
 
@@ -143,7 +159,8 @@ static void count_some(void *user, size_t begin, size_t end, int worker) {
 }
 
 size_t laves__count_bad(const laves__layer *layer, const laves__admission *admission) {
-  tally sum = {layer, admission, 0};
+  tally sum = {.layer = layer, .admission = admission};
+  atomic_init(&sum.count, 0);
   laves__parallel_for(layer->context, NULL, layer->tet_count, CHUNK, count_some, &sum); /* after a cancel nobody asks */
   return atomic_load(&sum.count);
 }

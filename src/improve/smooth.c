@@ -31,6 +31,7 @@ static const double longest_step = 0.5;   /* local sizes */
 static const double surface_reach = 0.75; /* local sizes: how far a trial point may be from the surface */
 static const double feature_reach = 4;    /* local sizes: how far from its crease or corner a vertex may still be */
 static const double least_gain = 0.005;   /* foretold gains below this are not worth a trial */
+static const double leap_below = 0.05, leap_gain = 0.01; /* quality; the first is about 7 degrees */
 static const double accept_share = 0.1, good_share = 0.5, exact_enough = 0.02;
 
 /* Functions by their value and gradient, coordinate by coordinate, so that several are looked at in one step. Behind the last
@@ -263,6 +264,36 @@ static bool keeps_chords(const laves__frame *frame, laves__layer *layer, int32_t
   return sag <= LAVES__SAG_LIMIT || sag <= laves__crease_sag(frame, layer, vertex);
 }
 
+/* Brings a trial place to where the vertex may stand. */
+static bool find_place(const laves__frame *frame, laves__layer *layer, int32_t vertex, double reach, laves__vec3 *place,
+                       uint32_t *hint, laves__vec3 *normal) {
+  const laves__hold hold = laves__layer_hold(layer, vertex);
+  if (layer->patch) { /* a plane or a line through where it stands */
+    const laves__vec3 here = layer->position[vertex], n = *normal = layer->normal[vertex], step = v3_sub(*place, here);
+    const laves__vec3 along = v3_scale(n, v3_dot(step, n));
+    *place = v3_add(here, hold.kind == LAVES__HOLD_CREASE ? along : v3_sub(step, along));
+    return true;
+  }
+  laves__vec3 foot = *place;
+  const bool there =
+      laves__frame_project_held(frame, hold, *place, reach, hint, &foot, normal) && v3_distance(foot, *place) <= reach;
+  *place = foot;
+  return there && (hold.kind != LAVES__HOLD_CREASE || keeps_chords(frame, layer, vertex, *place));
+}
+
+/* Near flat tets angles hardly change with a vertex's place, and no gradient leads away. There the middle of all around is tried,
+ * or half the way. */
+static bool leap(const laves__measure *m, laves__layer *layer, int32_t vertex, double least, laves__journal *journal) {
+  const laves__star *star = &layer->star[vertex];
+  laves__vec3 sum = {0, 0, 0};
+  for (int i = 0; i < star->count; i++)
+    for (int k = 0; k < 4; k++) sum = v3_add(sum, v3_sub(layer->position[layer->tet[star->tet[i]][k]], layer->position[vertex]));
+  const laves__vec3 way = v3_scale(sum, 1 / (3.0 * star->count)), here = layer->position[vertex];
+  for (int part = 1; part <= 2; part++)
+    if (try_place(m, layer, vertex, v3_mad(here, way, 1.0 / part), least + leap_gain, journal)) return true;
+  return false;
+}
+
 bool laves__smooth_vertex(const laves__frame *frame, const laves__measure *m, double target, laves__layer *layer, int32_t vertex,
                           laves__journal *journal) {
   const bool on_surface = layer->depth[vertex] == 0;
@@ -275,6 +306,10 @@ bool laves__smooth_vertex(const laves__frame *frame, const laves__measure *m, do
   for (int step = 0; step < STEPS_MAX; step++) {
     const double least = laves__star_quality(layer, vertex);
     if (least >= target) break;
+    if (layer->patch && !on_surface && least < leap_below && leap(m, layer, vertex, least, journal)) {
+      moved = true;
+      continue;
+    }
     fill_bundle(&b, m, layer, vertex, least);
     if (b.count == 0) break;
     bool accepted = false;
@@ -284,13 +319,7 @@ bool laves__smooth_vertex(const laves__frame *frame, const laves__measure *m, do
       laves__vec3 normal = {0, 0, 0};
       if (gain < least_gain) return moved;
       uint32_t hint = layer->hint[vertex];
-      bool there = true;
-      if (on_surface) {
-        laves__vec3 foot;
-        there = laves__frame_project_held(frame, hold, place, reach, &hint, &foot, &normal) && v3_distance(foot, place) <= reach;
-        place = foot;
-      }
-      if (there && hold.kind == LAVES__HOLD_CREASE) there = keeps_chords(frame, layer, vertex, place);
+      const bool there = !on_surface || find_place(frame, layer, vertex, reach, &place, &hint, &normal);
       if (there && try_place(m, layer, vertex, place, least + accept_share * gain, journal)) {
         accepted = moved = true;
         if (on_surface) {

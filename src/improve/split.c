@@ -10,13 +10,16 @@
  */
 #include "improve/split.h"
 
+#include <string.h>
+
 #include "improve/fit.h"
 #include "improve/guard.h"
 #include "improve/smooth.h"
 #include "mesh/mesh.h"
 
 enum { AROUND_MAX = 12, EDGES = 3 };
-static const double shortest = 0.7; /* local sizes: halves of shorter edges are of no use */
+static const double shortest = 0.7;  /* local sizes: halves of shorter edges are of no use */
+static const double thinnest = 1e-3; /* sine of an angle of a face below which its plane is not told by it */
 
 typedef struct around {
   int32_t tet[AROUND_MAX];
@@ -57,6 +60,52 @@ static laves__hold hold_of_edge(const laves__frame *frame, const laves__layer *l
   return (laves__hold){0, LAVES__HOLD_SURFACE};
 }
 
+/* Faces at an edge beyond which there is nothing. */
+static int outer_faces(const laves__layer *layer, int32_t a, int32_t b, const around *r) {
+  int count = 0;
+  for (int i = 0; i < r->count; i++)
+    for (int k = 0; k < 4; k++) {
+      const int32_t *t = layer->tet[r->tet[i]];
+      if (t[k] == a || t[k] == b || layer->patch[r->tet[i]][k] == LAVES__NO_PATCH) continue;
+      count += laves__layer_across(layer, r->tet[i], k) < 0;
+    }
+  return count;
+}
+
+/* The same where the boundary is given: in its patch, or on its crease, which is the edge itself. False: its faces are too thin
+ * to tell. */
+static bool hold_given(laves__layer *layer, int32_t a, int32_t b, const around *r, int32_t m) {
+  int32_t patch;
+  if (layer->fixed_boundary || outer_faces(layer, a, b, r) > 2) return false; /* where the boundary touches itself it stays */
+  laves__given_edge(layer, a, b, &patch);
+  const laves__vec3 along = v3_sub(layer->position[b], layer->position[a]);
+  if (patch == LAVES__NO_PATCH) {
+    layer->hold[m] = (laves__hold){0, LAVES__HOLD_CREASE};
+    layer->normal[m] = v3_unit(along);
+    return true;
+  }
+  layer->hold[m] = (laves__hold){0, LAVES__HOLD_PATCH};
+  for (int i = 0; i < 2; i++) {
+    const int32_t end = i ? b : a;
+    if (layer->hold[end].kind != LAVES__HOLD_PATCH) continue;
+    layer->normal[m] = layer->normal[end];
+    return true;
+  }
+  for (int i = 0; i < r->count; i++)
+    for (int k = 0; k < 4; k++) {
+      const int32_t *t = layer->tet[r->tet[i]];
+      if (t[k] == a || t[k] == b || layer->patch[r->tet[i]][k] == LAVES__NO_PATCH) continue;
+      int32_t third = -1;
+      for (int c = 0; c < 4; c++)
+        if (c != k && t[c] != a && t[c] != b) third = t[c];
+      const laves__vec3 aside = v3_sub(layer->position[third], layer->position[a]), normal = v3_cross(along, aside);
+      if (v3_norm(normal) < thinnest * v3_norm(along) * v3_norm(aside)) continue;
+      layer->normal[m] = v3_unit(normal);
+      return true;
+    }
+  return false;
+}
+
 /* Brings a dead vertex to life in the middle of an edge; false when it finds no place on the surface. */
 static bool make_vertex(const laves__frame *frame, laves__layer *layer, int32_t a, int32_t b, const around *r, int32_t m) {
   const double scale = 0.5 * (laves__layer_scale(layer, a) + laves__layer_scale(layer, b));
@@ -66,14 +115,23 @@ static bool make_vertex(const laves__frame *frame, laves__layer *layer, int32_t 
   layer->depth[m] = r->on_boundary ? 0 : 1;
   if (layer->scale) layer->scale[m] = (float)scale;
   if (!r->on_boundary) return true;
+  if (layer->patch) return hold_given(layer, a, b, r, m);
   const laves__hold hold = hold_of_edge(frame, layer, a, b, r);
   if (layer->hold) layer->hold[m] = hold;
   return laves__frame_project_held(frame, hold, layer->position[m], 0.5 * scale, &layer->hint[m], &layer->position[m],
                                    &layer->normal[m]);
 }
 
+/* The face between the halves is inside; the face that was opposite b is the half's at a, and the other way round. */
+static void share_patches(laves__layer *layer, int32_t t, int32_t fresh, int at_a, int at_b) {
+  memcpy(layer->patch[fresh], layer->patch[t], sizeof *layer->patch);
+  layer->patch[fresh][at_a] = LAVES__NO_PATCH;
+  layer->patch[t][at_b] = LAVES__NO_PATCH;
+  if (layer->region) layer->region[fresh] = layer->region[t];
+}
+
 /* Everything changed is in the journal first; false when memory is short. */
-static bool split(laves__layer *layer, int32_t b, const around *r, int32_t m, laves__slots *slots, laves__journal *j) {
+static bool split(laves__layer *layer, int32_t a, int32_t b, const around *r, int32_t m, laves__slots *slots, laves__journal *j) {
   if (!laves__journal_star(j, layer, m)) return false;
   for (int i = 0; i < r->count; i++)
     for (int k = 0; k < 4; k++) {
@@ -86,6 +144,7 @@ static bool split(laves__layer *layer, int32_t b, const around *r, int32_t m, la
     const int32_t t = r->tet[i], fresh = slots->tet[slots->count - 1 - i];
     if (!laves__journal_tet(j, layer, t) || !laves__journal_tet(j, layer, fresh)) return false;
     for (int k = 0; k < 4; k++) layer->tet[fresh][k] = layer->tet[t][k] == b ? m : layer->tet[t][k]; /* the half at a */
+    if (layer->patch) share_patches(layer, t, fresh, laves__layer_corner(layer, t, a), laves__layer_corner(layer, t, b));
     bool done = true;
     for (int k = 0; k < 4 && done; k++) {
       const int32_t v = layer->tet[fresh][k];
@@ -156,9 +215,10 @@ static bool split_edge(const laves__frame *frame, const laves__measure *measure,
   double before = HUGE_VAL;
   for (int i = 0; i < r.count; i++) before = fmin(before, layer->quality[r.tet[i]]);
   laves__journal_clear(j);
-  bool good = split(layer, b, &r, m, slots, j) && finish(layer, a, &r, m, j) && measure_around(measure, layer, m) > LAVES__FLAT;
+  bool good = split(layer, a, b, &r, m, slots, j) && finish(layer, a, &r, m, j) &&
+              (measure_around(measure, layer, m) > LAVES__FLAT || layer->patch);
   for (int round = 0; good && round < ROUNDS; round++) smooth_around(frame, measure, target, layer, m, j);
-  good = good && worst_touched(layer, j) > before && laves__feature_faults(frame, layer, m) == 0;
+  good = good && worst_touched(layer, j) > fmax(before, LAVES__FLAT) && laves__feature_faults(frame, layer, m) == 0;
   if (good && r.on_boundary) {
     laves__fit fit = LAVES__FIT_NONE;
     laves__fit_star(frame, layer, m, &fit);
@@ -186,7 +246,9 @@ bool laves__split_tet(const laves__frame *frame, const laves__measure *measure, 
     for (; at > 0 && length[order[at - 1]] < length[e]; at--) order[at] = order[at - 1];
     order[at] = e;
   }
-  for (int e = 0; e < EDGES && spare->count > 0 && length[order[e]] > shortest * shortest; e++) {
+  const int edges = layer->patch ? 6 : EDGES;
+  const double least = layer->patch ? 0.3 : shortest;
+  for (int e = 0; e < edges && spare->count > 0 && length[order[e]] > least * least; e++) {
     const int32_t a = layer->tet[tet][laves__tet_edge[order[e]][0]], b = layer->tet[tet][laves__tet_edge[order[e]][1]];
     if (split_edge(frame, measure, target, layer, a, b, slots, spare, journal)) return true;
   }

@@ -73,6 +73,9 @@ laves_result laves__read_vtu(laves__mesh_input *input, laves_error *error);
 laves_result laves__read_gmsh(laves__mesh_input *input, laves_error *error);
 laves_result laves__read_medit_text(laves__mesh_input *input, laves_error *error);
 laves_result laves__read_medit_binary(laves__mesh_input *input, laves_error *error);
+/* VTK's legacy unstructured grids, and Abaqus's input files. */
+laves_result laves__read_vtk(laves__mesh_input *input, laves_error *error);
+laves_result laves__read_abaqus(laves__mesh_input *input, laves_error *error);
 /* Gmsh's parsed post-processing views: values are required; tets that share no point, or points alone. */
 laves_result laves__read_pos(laves__mesh_input *input, laves_error *error);
 /* The three files of TetGen one after the other; each sets begin and end first. `base` is the number of the first point,

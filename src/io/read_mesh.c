@@ -28,11 +28,23 @@ static bool is_medit_binary(const laves__mesh_input *input) {
   return memcmp(input->begin, little, 4) == 0 || memcmp(input->begin, big, 4) == 0;
 }
 
+/* A line near the begin is one of the cards that come first in Abaqus's files; a file of one that begins with much else has its
+ * name. */
+static bool is_abaqus(const laves__mesh_input *input) {
+  static const char *const cards[] = {"*NODE", "*Node", "*node", "*HEADING", "*Heading", "*heading", "*PART", "*Part", "*part"};
+  for (size_t i = 0; i < LAVES__COUNT_OF(cards); i++)
+    if (laves__mesh_input_mentions(input, cards[i])) return true;
+  const char *dot = strrchr(input->name, '.');
+  return dot && strcasecmp(dot, ".inp") == 0;
+}
+
 static read_fn *find_reader(const laves__mesh_input *input) {
   if (is_medit_binary(input)) return laves__read_medit_binary;
   if (laves__mesh_input_mentions(input, "<VTKFile")) return laves__read_vtu;
   if (laves__mesh_input_mentions(input, "$MeshFormat")) return laves__read_gmsh;
   if (laves__mesh_input_mentions(input, "MeshVersionFormatted")) return laves__read_medit_text;
+  if (laves__mesh_input_mentions(input, "# vtk DataFile")) return laves__read_vtk;
+  if (is_abaqus(input)) return laves__read_abaqus;
   return NULL;
 }
 
@@ -90,7 +102,8 @@ static laves_result read_one(laves__mesh_input *input, const char *path, laves_e
     result = read(input, error);
   else
     result = laves__mesh_input_fail(
-        input, error, "it is not a tetrahedral mesh of a format that is known (VTU, Gmsh, Medit; TetGen by .node or .ele)");
+        input, error,
+        "it is not a tetrahedral mesh of a format that is known (VTU, legacy VTK, Gmsh, Medit, Abaqus; TetGen by .node or .ele)");
   close_file(input);
   return result;
 }

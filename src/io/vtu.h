@@ -103,4 +103,7 @@ int64_t laves__vtu_integer(laves__vtu_kind kind, const char *at);
 /* A number of any kind. */
 double laves__vtu_real(laves__vtu_kind kind, const char *at);
 
+/* Whether programs give this name to the material of a cell. */
+bool laves__vtu_is_region_name(laves__word name);
+
 #endif

@@ -144,7 +144,7 @@ static laves_result add_piece(laves__vtu *r, const tag *t, laves_error *error) {
 }
 
 /* Names that programs give to the material of a cell. */
-static bool is_region_name(laves__word name) {
+bool laves__vtu_is_region_name(laves__word name) {
   static const char *const known[] = {"region",      "gmsh:physical", "medit:ref", "tetgen:ref",
                                       "MaterialIds", "CellEntityIds", "material"};
   for (size_t i = 0; i < LAVES__COUNT_OF(known); i++)
@@ -157,7 +157,7 @@ static int array_of(laves__word section, const tag *t) {
   laves__word name = {"", 0};
   attribute(t, "Name", &name);
   if (laves__word_is(section, "Points")) return LAVES__VTU_POINTS;
-  if (laves__word_is(section, "CellData") && is_region_name(name)) return LAVES__VTU_REGION;
+  if (laves__word_is(section, "CellData") && laves__vtu_is_region_name(name)) return LAVES__VTU_REGION;
   if (laves__word_is(section, "Verts") || laves__word_is(section, "Lines")) {
     const bool is_line = laves__word_is(section, "Lines");
     if (laves__word_is(name, "connectivity")) return is_line ? LAVES__VTU_LINE_CONNECTIVITY : LAVES__VTU_VERT_CONNECTIVITY;

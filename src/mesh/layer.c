@@ -27,10 +27,22 @@ laves_result laves__layer_create(laves_context *context, size_t vertex_count, si
   return laves__fail_memory(context, error);
 }
 
+static void free_stars(laves__layer *layer) {
+  laves_context *context = layer->context;
+  for (size_t v = 0; layer->star && v < layer->vertex_count; v++) {
+    laves__star *star = &layer->star[v];
+    if (star->own_block) laves__free(context, star->tet, (size_t)star->capacity, sizeof *star->tet);
+    *star = (laves__star){0};
+  }
+  laves__free(context, layer->star_block, layer->star_block_count, sizeof *layer->star_block);
+  layer->star_block = NULL;
+  layer->star_block_count = 0;
+}
+
 laves_result laves__layer_link(laves__layer *layer, laves_error *error) {
-  for (size_t v = 0; v < layer->vertex_count; v++) layer->star[v] = (laves__star){0};
+  free_stars(layer);
   for (size_t t = 0; t < layer->tet_count; t++)
-    for (int k = 0; k < 4; k++) layer->star[layer->tet[t][k]].count++;
+    for (int k = 0; k < 4 && layer->tet[t][0] >= 0; k++) layer->star[layer->tet[t][k]].count++;
   size_t total = 0;
   for (size_t v = 0; v < layer->vertex_count; v++) {
     laves__star *star = &layer->star[v];
@@ -48,52 +60,28 @@ laves_result laves__layer_link(laves__layer *layer, laves_error *error) {
     place += (size_t)star->capacity;
   }
   for (size_t t = 0; t < layer->tet_count; t++)
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4 && layer->tet[t][0] >= 0; k++) {
       laves__star *star = &layer->star[layer->tet[t][k]];
       if (star->capacity) star->tet[star->count++] = (int32_t)t;
     }
   return LAVES_OK;
 }
 
-bool laves__layer_extend(laves__layer *layer, size_t extra) {
-  const size_t old = layer->tet_count, count = old + extra;
-  if (count > INT32_MAX) return false;
-  int32_t(*tet)[4] = laves__alloc(layer->context, count, sizeof *tet);
-  double *quality = laves__alloc(layer->context, count, sizeof *quality);
-  if (!tet || !quality) {
-    laves__free(layer->context, tet, count, sizeof *tet);
-    laves__free(layer->context, quality, count, sizeof *quality);
-    return false;
-  }
-  memcpy(tet, layer->tet, old * sizeof *tet);
-  memcpy(quality, layer->quality, old * sizeof *quality);
-  for (size_t t = old; t < count; t++) {
-    tet[t][0] = -1;
-    quality[t] = 0;
-  }
-  laves__free(layer->context, layer->tet, old, sizeof *tet);
-  laves__free(layer->context, layer->quality, old, sizeof *quality);
-  layer->tet = tet;
-  layer->quality = quality;
-  layer->tet_count = count;
-  return true;
-}
-
-/* An array of the vertices, to be replaced by a longer one. */
-typedef struct vertex_array {
+/* An array of the vertices or tets, to be replaced by a longer one. */
+typedef struct long_array {
   void *array; /* the address of its pointer, which is NULL where the layer has none */
   size_t size; /* of an item */
   void *longer;
-} vertex_array;
+} long_array;
 
-static void *block_of(const vertex_array *v) {
+static void *block_of(const long_array *v) {
   void *block;
   memcpy(&block, v->array, sizeof block);
   return block;
 }
 
 /* The longer arrays are all made before the first takes its place, for then nothing has to be undone when memory is short. */
-static bool lengthen(laves_context *context, vertex_array *all, size_t array_count, size_t old, size_t extra) {
+static bool lengthen(laves_context *context, long_array *all, size_t array_count, size_t old, size_t extra) {
   bool memory = true;
   for (size_t i = 0; i < array_count; i++)
     if (block_of(&all[i])) memory = (all[i].longer = laves__alloc(context, old + extra, all[i].size)) && memory;
@@ -106,13 +94,30 @@ static bool lengthen(laves_context *context, vertex_array *all, size_t array_cou
   return memory;
 }
 
+bool laves__layer_extend(laves__layer *l, size_t extra) {
+  const size_t old = l->tet_count;
+  long_array all[] = {{&l->tet, sizeof *l->tet, NULL},
+                      {&l->quality, sizeof *l->quality, NULL},
+                      {&l->patch, sizeof *l->patch, NULL},
+                      {&l->region, sizeof *l->region, NULL}};
+  if (old + extra > INT32_MAX || !lengthen(l->context, all, LAVES__COUNT_OF(all), old, extra)) return false;
+  l->tet_count = old + extra;
+  for (size_t t = old; t < l->tet_count; t++) {
+    l->tet[t][0] = -1;
+    l->quality[t] = 0;
+    for (int k = 0; k < 4 && l->patch; k++) l->patch[t][k] = LAVES__NO_PATCH;
+    if (l->region) l->region[t] = 0;
+  }
+  return true;
+}
+
 bool laves__layer_extend_vertices(laves__layer *l, size_t extra) {
   const size_t old = l->vertex_count;
-  vertex_array all[] = {{&l->position, sizeof *l->position, NULL}, {&l->normal, sizeof *l->normal, NULL},
-                        {&l->hint, sizeof *l->hint, NULL},         {&l->depth, sizeof *l->depth, NULL},
-                        {&l->hold, sizeof *l->hold, NULL},         {&l->off_surface, sizeof *l->off_surface, NULL},
-                        {&l->scale, sizeof *l->scale, NULL},       {&l->origin, sizeof *l->origin, NULL},
-                        {&l->star, sizeof *l->star, NULL}};
+  long_array all[] = {{&l->position, sizeof *l->position, NULL}, {&l->normal, sizeof *l->normal, NULL},
+                      {&l->hint, sizeof *l->hint, NULL},         {&l->depth, sizeof *l->depth, NULL},
+                      {&l->hold, sizeof *l->hold, NULL},         {&l->off_surface, sizeof *l->off_surface, NULL},
+                      {&l->scale, sizeof *l->scale, NULL},       {&l->origin, sizeof *l->origin, NULL},
+                      {&l->star, sizeof *l->star, NULL}};
   if (old + extra > INT32_MAX || !lengthen(l->context, all, LAVES__COUNT_OF(all), old, extra)) return false;
   l->vertex_count = old + extra;
   for (size_t v = old; v < l->vertex_count; v++) {
@@ -132,9 +137,7 @@ void laves__layer_free(laves__layer *layer) {
   laves_context *context = layer->context;
   if (!context) return;
   const size_t vertices = layer->vertex_count, tets = layer->tet_count;
-  for (size_t v = 0; layer->star && v < vertices; v++)
-    if (layer->star[v].own_block)
-      laves__free(context, layer->star[v].tet, (size_t)layer->star[v].capacity, sizeof *layer->star[v].tet);
+  free_stars(layer);
   laves__free(context, layer->position, vertices, sizeof *layer->position);
   laves__free(context, layer->normal, vertices, sizeof *layer->normal);
   laves__free(context, layer->hint, vertices, sizeof *layer->hint);
@@ -145,8 +148,9 @@ void laves__layer_free(laves__layer *layer) {
   laves__free(context, layer->origin, vertices, sizeof *layer->origin);
   laves__free(context, layer->star, vertices, sizeof *layer->star);
   laves__free(context, layer->tet, tets, sizeof *layer->tet);
+  laves__free(context, layer->patch, layer->patch ? tets : 0, sizeof *layer->patch);
+  laves__free(context, layer->region, layer->region ? tets : 0, sizeof *layer->region);
   laves__free(context, layer->quality, tets, sizeof *layer->quality);
-  laves__free(context, layer->star_block, layer->star_block_count, sizeof *layer->star_block);
   memset(layer, 0, sizeof *layer);
 }
 
@@ -166,6 +170,7 @@ int32_t laves__layer_across(const laves__layer *layer, int32_t tet, int corner) 
 }
 
 bool laves__layer_is_boundary_face(const laves__layer *layer, int32_t tet, int corner) {
+  if (layer->patch) return layer->patch[tet][corner] != LAVES__NO_PATCH;
   for (int k = 0; k < 4; k++)
     if (k != corner && layer->depth[layer->tet[tet][k]] != 0) return false;
   return laves__layer_across(layer, tet, corner) < 0;

@@ -5,7 +5,12 @@
  * and join the layer to the untouched interior. Coordinates are those of the lattice: the mean edge is 1.
  *
  * Stars are lists of tets in slices of one block; a star that outgrows its slice gets a block of its own, so parts of the
- * layer that are far from one another can be changed from several threads at once. */
+ * layer that are far from one another can be changed from several threads at once.
+ *
+ * The whole of a mesh of another program can be a layer, too (improve/given.h). Its boundary is given: there is no oracle, and
+ * each face of a tet knows the flat patch of the boundary, or of the border between two regions, that it is a part of. Then every
+ * vertex has a star, and what a vertex of depth 0 may do is told by its hold's kind alone and by `normal`: to move in the plane
+ * of its patch, along its straight crease, or not at all. */
 #ifndef LAVES_MESH_LAYER_H
 #define LAVES_MESH_LAYER_H
 
@@ -37,18 +42,23 @@ typedef struct laves__layer {
   uint32_t *origin;    /* record * 24 + site, or LAVES__NO_ORIGIN for the further copies of a parted vertex */
   laves__star *star;   /* of depth 0 .. LAVES__DEPTH_MOVES; NULL tet: dead vertex */
   size_t tet_count;
-  int32_t (*tet)[4];   /* tet[t][0] < 0: dead */
+  int32_t (*tet)[4]; /* tet[t][0] < 0: dead */
+  int32_t (
+      *patch)[4]; /* of the face opposite each corner, or LAVES__NO_PATCH for faces inside; NULL: the boundary is not given */
+  bool fixed_boundary; /* of a given boundary: its vertices and faces stay as they are */
+  int32_t *region;     /* [tet_count] of a given mesh; NULL: all are one */
   double *quality;     /* [tet_count], kept by the improver */
   int32_t *star_block; /* slices for the stars */
   size_t star_block_count;
 } laves__layer;
 
 #define LAVES__NO_ORIGIN UINT32_MAX
+#define LAVES__NO_PATCH (-1)
 
 /* Arrays for the given counts, contents undefined but for stars (empty). */
 laves_result laves__layer_create(laves_context *context, size_t vertex_count, size_t tet_count, laves__layer *layer,
                                  laves_error *error);
-/* Makes the stars from tets and depths. */
+/* Makes the stars from tets and depths; again, when they are there. */
 laves_result laves__layer_link(laves__layer *layer, laves_error *error);
 /* Adds dead tets, for operations that need more than they free; false when memory is short. */
 bool laves__layer_extend(laves__layer *layer, size_t extra);

@@ -7,6 +7,7 @@
 #include "fixtures/line_files.h"
 #include "fixtures/shapes.h"
 #include "fixtures/size_files.h"
+#include "fixtures/spoilt.h"
 #include "fixtures/tagged_cube.h"
 
 enum { PATH_BYTES = FIXTURE_FOLDER_MAX + 100 };
@@ -132,10 +133,35 @@ static bool put_subject(laves_context *context, const job_place *place) {
   return right;
 }
 
+/* A mesh with much to improve, as Abaqus's input, and two tets in VTK's legacy form. */
+static bool put_bad_meshes(laves_context *context, const job_place *place) {
+  laves_mesh *plain = fixture_plain_cube(context, 2), *mesh = fixture_spoilt(context, plain, 25, 1, 4);
+  char path[PATH_BYTES];
+  snprintf(path, sizeof path, "%s/bad.inp", place->inputs);
+  FILE *file = fopen(path, "w");
+  if (file) fprintf(file, "*NODE\n");
+  for (size_t v = 0; file && v < mesh->vertex_count; v++)
+    fprintf(file, "%zu, %.17g, %.17g, %.17g\n", v + 1, mesh->points[v].x, mesh->points[v].y, mesh->points[v].z);
+  if (file) fprintf(file, "*ELEMENT, TYPE=C3D4, ELSET=all\n");
+  for (size_t t = 0; file && t < mesh->tet_count; t++)
+    fprintf(file, "%zu, %d, %d, %d, %d\n", t + 1, mesh->tets[t][0] + 1, mesh->tets[t][1] + 1, mesh->tets[t][2] + 1,
+            mesh->tets[t][3] + 1);
+  if (file) fprintf(file, "*ELSET, ELSET=some, GENERATE\n3, 90, 2\n*SURFACE, NAME=side\nsome, S2\n");
+  laves_mesh_free(mesh);
+  laves_mesh_free(plain);
+  return file && fclose(file) == 0 &&
+         put_text(
+             place, "two.vtk",
+             "# vtk DataFile Version 3.0\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\n"
+             "CELLS 3 14\n4 0 1 2 3\n4 1 2 3 4\n3 0 2 1\nCELL_TYPES 3\n10 10 5\nCELL_DATA 3\nSCALARS region int\n"
+             "LOOKUP_TABLE default\n4 9 6\n");
+}
+
 bool job_place_make(job_place *place) {
   laves_context *context = laves_context_create(NULL);
   const bool right = context && fixture_folder_make(place->inputs) && fixture_folder_make(place->outputs) && put_solids(place) &&
-                     put_drawings(place) && put_sizes(place) && put_tagged(context, place) && put_subject(context, place);
+                     put_drawings(place) && put_sizes(place) && put_tagged(context, place) && put_subject(context, place) &&
+                     put_bad_meshes(context, place);
   laves_context_free(context);
   return right;
 }

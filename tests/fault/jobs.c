@@ -485,6 +485,22 @@ static void take_written(const char *path, job_outcome *out) {
 }
 
 /* `what` is the file's name; an 'a' in front of it means text instead of binary, a 'c' compressed. */
+static laves_result improve(laves_context *context, const job_place *place, const char *what, job_outcome *out) {
+  char path[PATH_BYTES];
+  laves_mesh *mesh = NULL, *improved = NULL;
+  laves_improve_options options = laves_improve_options_default();
+  laves_improve_report report = {0};
+  options.min_dihedral = 40;
+  options.max_dihedral = 125;
+  laves_result result = laves_mesh_read(context, input_path(place, what, path), &mesh, &out->error);
+  if (result == LAVES_OK) result = laves_improve(context, mesh, &options, &improved, &report, &out->error);
+  if (improved) take_mesh(out, improved);
+  take_number(out, (double)report.outside_after);
+  laves_mesh_free(improved);
+  laves_mesh_free(mesh);
+  return result == LAVES_TARGET_MISSED ? LAVES_OK : result;
+}
+
 static laves_result write_mesh(laves_context *context, const job_place *place, const char *what, job_outcome *out) {
   char path[PATH_BYTES];
   laves_write_options options = laves_write_options_default();
@@ -528,6 +544,8 @@ const job jobs[] = {
     {"mesh graded", mesh_graded, "cube.obj"},
     {"mesh streamed", mesh_streamed, "tag('a', sphere(1)) - sphere(0.8)"},
     {"mesh tiling", make_tiling, ""},
+    {"improve", improve, "bad.inp"},
+    {"improve with regions and tags", improve, "tagged.vtu"},
     {"estimate", estimate, "cube.obj"},
     {"check a mesh", check_mesh, ""},
     {"check a file", check_file, "cube.vtu"},
@@ -566,5 +584,7 @@ const job jobs[] = {
     {"read Medit, text", read_mesh, "tagged.mesh"},
     {"read Medit, binary", read_mesh, "tagged.meshb"},
     {"read TetGen", read_mesh, "tagged.node"},
+    {"read legacy VTK", read_mesh, "two.vtk"},
+    {"read Abaqus", read_mesh, "bad.inp"},
 };
 const int job_count = sizeof jobs / sizeof *jobs;

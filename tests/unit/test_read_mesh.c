@@ -215,6 +215,105 @@ static void test_tetgen_from_one(void **state) {
   laves_mesh_free(mesh);
 }
 
+/* Two tets and a triangle; regions and tags are cell data. */
+static void test_legacy_vtk(void **state) {
+  fixture *f = *state;
+  static const char *const cells[] = {
+      "CELLS 3 14\n4 0 1 2 3\n4 1 2 3 4\n3 0 2 1\n",
+      "CELLS 4 11\nOFFSETS vtktypeint64\n0 4 8 11\nCONNECTIVITY vtktypeint64\n0 1 2 3 1 2 3 4 0 2 1\n"};
+  static const char *const data[] = {
+      "POINT_DATA 5\nSCALARS heat double\nLOOKUP_TABLE default\n1 2 3 4 5\nCELL_DATA 3\nSCALARS material int 1\nLOOKUP_TABLE "
+      "default\n4 9 6\n",
+      "CELL_DATA 3\nFIELD FieldData 2\nquality 1 3 double\n0.5 0.5 0.5\nregion 1 3 int\n4 9 6\n"};
+  for (int form = 0; form < 2; form++) {
+    char text[1200];
+    snprintf(text, sizeof text,
+             "# vtk DataFile Version %s\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\n"
+             "%sCELL_TYPES 3\n10 10 5\n%s",
+             form ? "5.1" : "3.0", cells[form], data[form]);
+    write_text(f, "two.vtk", text);
+    laves_mesh *mesh = read_back(f);
+    assert_int_equal(mesh->tet_count, 2);
+    assert_int_equal(mesh->vertex_count, 5);
+    assert_non_null(mesh->regions);
+    assert_int_equal(mesh->regions[0], 4);
+    assert_int_equal(mesh->regions[1], 9);
+    size_t tagged = 0;
+    assert_non_null(mesh->face_tags);
+    for (size_t i = 0; i < mesh->face_count; i++) tagged += mesh->face_tags[i] == 6;
+    assert_int_equal(tagged, 1);
+    laves_mesh_free(mesh);
+  }
+}
+
+static char *put_big(char *at, uint64_t bits, int bytes) {
+  for (int i = bytes - 1; i >= 0; i--) *at++ = (char)(bits >> 8 * i);
+  return at;
+}
+
+static void test_binary_legacy_vtk(void **state) {
+  fixture *f = *state;
+  static const float points[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  char text[400], *at = text;
+  at += sprintf(at, "# vtk DataFile Version 3.0\none\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n");
+  for (int i = 0; i < 12; i++) {
+    uint32_t bits;
+    memcpy(&bits, &points[i], sizeof bits);
+    at = put_big(at, bits, 4);
+  }
+  at += sprintf(at, "\nCELLS 1 5\n");
+  for (int i = 0; i < 5; i++) at = put_big(at, i == 0 ? 4 : (uint64_t)i - 1, 4);
+  at += sprintf(at, "\nCELL_TYPES 1\n");
+  at = put_big(at, 10, 4);
+  at += sprintf(at, "\nCELL_DATA 1\nSCALARS region short\nLOOKUP_TABLE default\n");
+  at = put_big(at, 7, 2);
+  set_path(f, "binary.vtk");
+  FILE *file = fopen(f->path, "wb");
+  assert_non_null(file);
+  assert_int_equal(fwrite(text, 1, (size_t)(at - text), file), at - text);
+  assert_int_equal(fclose(file), 0);
+  laves_mesh *mesh = read_back(f);
+  assert_int_equal(mesh->tet_count, 1);
+  assert_float_equal(mesh->points[3].z, 1, 0);
+  assert_int_equal(mesh->regions[0], 7);
+  laves_mesh_free(mesh);
+}
+
+/* Numbers with gaps, an element over two lines, sets by card, list and range, and surfaces by set and by element. */
+static void test_abaqus(void **state) {
+  fixture *f = *state;
+  write_text(f, "two.inp",
+             "*Heading\n** a comment, with *NODE in it\n two tets\n*NODE, NSET=all\n1, 0, 0, 0\n2, 1., 0, 0\n3, 0, 1d0, 0\n"
+             "4, 0, 0, 1\n10, 1,1,1\n*Element, type=C3D4H, elset=Core\n1, 1, 2, 3, 4\n*ELEMENT,TYPE=C3D4\n7, 2, 3,\n4, 10\n"
+             "*Element, type=B31\n8, 1, 2\n*Elset, elset=shell, generate\n5, 9, 2\n*ELSET, ELSET=EVERYTHING\ncore, SHELL,\n"
+             "*Surface, name=inlet, type=ELEMENT\nCORE, S1\n*Surface, name=outlet\n7, S3\n*Material, name=steel\n*Elastic\n"
+             "210000., 0.3\n");
+  laves_mesh *mesh = read_back(f);
+  assert_int_equal(mesh->tet_count, 2);
+  assert_int_equal(mesh->vertex_count, 5);
+  assert_int_equal(mesh->regions[0], 1);
+  assert_int_equal(mesh->regions[1], 2);
+  assert_string_equal(laves_mesh_group_name(mesh, 3, 1), "Core");
+  assert_string_equal(laves_mesh_group_name(mesh, 3, 2), "shell");
+  assert_string_equal(laves_mesh_group_name(mesh, 2, 1), "inlet");
+  assert_string_equal(laves_mesh_group_name(mesh, 2, 2), "outlet");
+  for (size_t i = 0; i < mesh->face_count; i++) {
+    const int32_t *c = mesh->faces[i];
+    const int inlet = c[0] + c[1] + c[2] == 0 + 1 + 2, outlet = c[0] + c[1] + c[2] == 2 + 3 + 4 && c[0] && c[1] && c[2];
+    const bool has_1 = c[0] == 1 || c[1] == 1 || c[2] == 1;
+    assert_int_equal(mesh->face_tags[i], inlet ? 1 : outlet && !has_1 ? 2 : 0);
+  }
+  laves_mesh_free(mesh);
+  write_text(f, "ten.inp",
+             "*node\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,.5,0,0\n6,.5,.5,0\n7,0,.5,0\n8,0,0,.5\n9,.5,0,.5\n10,0,.5,.5\n"
+             "*element,type=c3d10\n1,1,2,3,4,5,6,7,\n8,9,10\n*element, type=CPS6, elset=wall\n2, 1, 2, 4, 5, 9, 8\n");
+  mesh = read_back(f);
+  assert_int_equal(mesh->vertex_count, 4);
+  assert_null(mesh->regions);
+  assert_string_equal(laves_mesh_group_name(mesh, 2, 1), "wall");
+  laves_mesh_free(mesh);
+}
+
 static void assert_refused(fixture *f, const char *name, const char *text, const char *sentence_part) {
   write_text(f, name, text);
   laves_mesh *mesh;
@@ -241,6 +340,22 @@ static void test_refused(void **state) {
                  "<DataArray type='Float64' format='ascii'>0</DataArray></Points>",
                  "shorter than announced");
   assert_refused(f, "a.node", "2 3 0 0\n5 0 0 0\n", "points must be numbered");
+  assert_refused(f, "a.vtk", "# vtk DataFile Version 3.0\n\nASCII\nDATASET STRUCTURED_POINTS\n", "STRUCTURED_POINTS");
+  assert_refused(f, "a.vtk", "# vtk DataFile Version 3.0\n\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 1 double\n0 0\n",
+                 "a coordinate");
+  assert_refused(f, "a.vtk",
+                 "# vtk DataFile Version 3.0\n\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 1 double\n0 0 0\nCELLS 1 5\n4 0 0 0 7\n"
+                 "CELL_TYPES 1\n10\n",
+                 "tetrahedron 1 uses vertex 8, but there are 1");
+  assert_refused(f, "a.vtk",
+                 "# vtk DataFile Version 3.0\n\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 0 double\nCELLS 0 0\nCELL_TYPES 1\n10\n",
+                 "there are 1 types, but 0 cells");
+  assert_refused(f, "a.inp", "*NODE\n1, 0, zero, 0\n", "line 2: expected a coordinate, not 'zero'");
+  assert_refused(f, "a.inp", "*NODE\n1, 0, 0, 0\n1, 1, 0, 0\n", "node 1 is given twice");
+  assert_refused(f, "a.inp", "*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n",
+                 "element 1 uses node 2, which there is not");
+  assert_refused(f, "a.inp", "*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 2,", "the file ends within an element");
+  assert_refused(f, "a.inp", "*NODE\n1,0,0,0\n*INCLUDE, INPUT=b.inp\n", "files that include others are not read");
   assert_refused(f, "b.ele", "0 4 0\n", "b.node");
 }
 
@@ -334,6 +449,9 @@ int main(void) {
       cmocka_unit_test_setup_teardown(test_names_and_sources_in_vtu, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_sources_without_tags, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_base64_vtu, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_legacy_vtk, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_binary_legacy_vtk, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_abaqus, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_tetgen_from_one, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_refused, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_truncated, set_up, tear_down),
