@@ -9,6 +9,8 @@
  *
  * Departure from the paper (section 4.3): it classifies tiles by their circumspheres on a grid of distances; we ask the
  * domain itself, and only where it matters. */
+#include <string.h>
+
 #include "classify/classify.h"
 
 #include "classify/classify_graph.h"
@@ -222,15 +224,24 @@ static void evaluate_by_distance(const laves__frame *frame, laves__record *r) {
   }
 }
 
-static void evaluate_record(const laves__frame *frame, laves__record *r) {
-  if (frame->oracle->is_distance) {
-    evaluate_by_distance(frame, r);
-  } else {
-    laves__vec3 at[LAVES__C15_SITES];
-    for (int site = 0; site < LAVES__C15_SITES; site++) at[site] = laves__site_position(r->xyz, site);
-    r->hint[0] = LAVES__NO_HINT;
-    laves__frame_evaluate(frame, LAVES__C15_SITES, at, r->phi, r->hint);
+/* Cells whose sites are asked in one call, for oracles that like large ones. */
+enum { TOGETHER = 16 };
+
+static void evaluate_together(const laves__frame *frame, laves__record *records, size_t count) {
+  laves__vec3 at[TOGETHER * LAVES__C15_SITES];
+  double phi[TOGETHER * LAVES__C15_SITES];
+  uint32_t hint[TOGETHER * LAVES__C15_SITES] = {LAVES__NO_HINT};
+  for (size_t i = 0; i < count; i++)
+    for (int site = 0; site < LAVES__C15_SITES; site++)
+      at[i * LAVES__C15_SITES + (size_t)site] = laves__site_position(records[i].xyz, site);
+  laves__frame_evaluate(frame, count * LAVES__C15_SITES, at, phi, hint);
+  for (size_t i = 0; i < count; i++) {
+    memcpy(records[i].phi, phi + i * LAVES__C15_SITES, sizeof records[i].phi);
+    memcpy(records[i].hint, hint + i * LAVES__C15_SITES, sizeof records[i].hint);
   }
+}
+
+static void set_signs(laves__record *r) {
   for (int site = 0; site < LAVES__C15_SITES; site++) {
     if (isnan(r->phi[site])) r->phi[site] = HUGE_VAL; /* what has no value is not inside */
     r->sign[site] = r->label[site] = r->phi[site] < 0 ? -1 : 1;
@@ -240,7 +251,17 @@ static void evaluate_record(const laves__frame *frame, laves__record *r) {
 static void evaluate_records(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   carving *c = user;
-  for (size_t i = begin; i < end; i++) evaluate_record(c->frame, &c->lattice->record[c->first_record + i]);
+  laves__record *records = c->lattice->record + c->first_record;
+  const laves__oracle *oracle = c->frame->oracle;
+  const size_t together = oracle->batch > 0 && !oracle->is_distance ? TOGETHER : 1;
+  for (size_t i = begin; i < end; i += together) {
+    const size_t count = end - i < together ? end - i : together;
+    if (oracle->is_distance)
+      evaluate_by_distance(c->frame, &records[i]);
+    else
+      evaluate_together(c->frame, &records[i], count);
+    for (size_t k = i; k < i + count; k++) set_signs(&records[k]);
+  }
 }
 
 /* ---- sealing: what an inconsistent oracle may leave open ---- */
