@@ -137,7 +137,8 @@ class Mesh:
 
     @property
     def face_tags(self) -> np.ndarray:
-        """int32 (k,): of each boundary face; all 1 where nothing has a tag (then no view). Names are in `face_groups`."""
+        """int32 (k,): of each boundary face, 1 + the tag of the input that is nearest; all 1 where nothing has a tag (then no view).
+        Names are in `face_groups`."""
         return self._labels(lib.laves_mesh_face_tags, self.face_count)
 
     @property
