@@ -60,12 +60,12 @@ def mesh(source, faces=None, *, threads: "int | None" = None, memory: "int | Non
     features: laves.Features.  feature_angle: sharper edges are kept, degrees, 0: none.  feature_tags.
     align: "none", "pca", or a rotation matrix (3, 3).  regions: "none", "parts".  face_sources.  streamed.
 
-    threads: 0: one per core.  memory: bytes that may be held, 0: no limit.  progress: called as progress(phase, fraction), from
+    threads: 0: one per core, which is the default but for functions of Python: 1.  memory: bytes that may be held, 0: no limit.  progress: called as progress(phase, fraction), from
     the calling thread; returning False cancels within about 0.2 seconds (laves.CancelledError), and so does what it raises.
     timeout: seconds; laves.TimeoutError. Ctrl-C is answered likewise.
 
     Warns laves.TargetMissed when the mesh is valid but a wished target was missed; raises laves.Error."""
-    call = {"threads": threads or 0, "memory": memory or 0, "progress": progress, "timeout": timeout}
+    call = {"threads": threads, "memory": memory or 0, "progress": progress, "timeout": timeout}
     domain = _domain_of(source, faces, options, call)
     apart = {"threads": threads, "memory": memory} if domain is source else {}
     return domain.mesh(progress=progress, timeout=timeout, **apart, **options)
@@ -76,7 +76,7 @@ def info(source, faces=None, **options) -> DomainInfo:
     return _domain_of(source, faces, options, options).info
 
 
-def estimate(source, faces=None, *, threads: int = 0, memory: int = 0, progress=None, timeout: "float | None" = None,
+def estimate(source, faces=None, *, threads: "int | None" = None, memory: int = 0, progress=None, timeout: "float | None" = None,
              **options) -> Expectation:
     """What laves.mesh() of the same arguments is likely to hold; a small part of its cost."""
     call = {"threads": threads, "memory": memory, "progress": progress, "timeout": timeout}

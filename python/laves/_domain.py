@@ -10,7 +10,7 @@ from . import _arrays, _header, errors, solids
 from ._library import lib, path_of, text_of
 from ._options import fill, mesh_options
 from ._records import DomainInfo, Expectation, Place
-from ._session import Handle, MadeByCall, Session
+from ._session import Handle, MadeByCall, Session, deliver_signals
 
 _SURFACE_SUFFIXES = (".stl", ".obj", ".ply", ".off", ".msh", ".lua", ".vtu", ".mesh", ".meshb", ".node", ".ele")
 
@@ -21,7 +21,7 @@ class _Function:
     KIND = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
 
     def __init__(self, function):
-        self._state = {"raised": None}
+        self._state = {"raised": None, "stopped": False}
         self._users = 0
         self._lock = threading.Lock()
         self._callback = self.KIND(_evaluator(function, self._state))
@@ -32,10 +32,16 @@ class _Function:
         """What the function raised since calls that may ask it have begun."""
         return self._state["raised"]
 
+    def stop(self):
+        """The call is cancelled: what is still asked gets any answer, without the function."""
+        with self._lock:
+            if self._users == 1:
+                self._state["stopped"] = True
+
     def __enter__(self):
         with self._lock:
             if self._users == 0:
-                self._state["raised"] = None
+                self._state.update(raised=None, stopped=False)
             self._users += 1
 
     def __exit__(self, *_):
@@ -58,16 +64,17 @@ def _evaluator(function, state):
     def evaluate(_, points, count, values):
         given, wanted = views.get((points, count, values)) or view(points, count, values)
         try:
-            if state["raised"]:
+            if state["stopped"]:
                 wanted[:] = 1
                 return
+            deliver_signals()
             answer = function(given.copy())  # the function may keep what it was given
             if getattr(answer, "shape", None) != (count,):
                 raise ValueError(f"the function must return an array of shape ({count},) for points of shape ({count}, 3), not "
                                  + (f"{answer.shape}" if hasattr(answer, "shape") else type(answer).__name__))
             wanted[:] = answer
         except BaseException as e:  # it may not pass through the library; the call raises it in the end
-            state["raised"] = e
+            state.update(raised=e, stopped=True)
             wanted[:] = 1
 
     return evaluate
@@ -82,23 +89,24 @@ class Domain:
     - an object with points and faces: a PyVista surface, a trimesh, a meshio mesh of triangles;
     - a function of points, float64 (n, 3), that returns a value for each, float64 (n,): negative inside, zero on the surface. It
       needs `bounds`, (lower, upper): the corners of a box that contains the solid with a little room. `lipschitz`, if known, bounds
-      how fast values change per unit of distance, which spares evaluations far from the surface. It is called with batches of one to
-      a few thousand points, one call at a time, from threads of the library.
+      how fast values change per unit of distance, which spares evaluations far from the surface. It is called with batches of up to
+      some hundred points, and with one thread unless `threads` says more.
 
     Of surfaces: winding, close_holes, overlap ("direction", "union", "nested") as in laves.h; defects=True keeps the place of each
     defect. threads and memory are those of laves.mesh(); progress and timeout, too.
 
     Only to be read once made; may be meshed by several threads at once."""
 
-    def __init__(self, source, faces=None, *, tags=None, bounds=None, lipschitz: float = 0.0, defects: bool = False, threads: int = 0,
-                 memory: int = 0, progress=None, timeout: "float | None" = None, **surface):
-        self.session = Session(threads, memory)
+    def __init__(self, source, faces=None, *, tags=None, bounds=None, lipschitz: float = 0.0, defects: bool = False,
+                 threads: "int | None" = None, memory: int = 0, progress=None, timeout: "float | None" = None, **surface):
+        kind, content = _understand(source, faces, tags, bounds)
+        # Threads would only wait for one another where all of them ask Python.
+        self.session = Session((1 if kind == "function" else 0) if threads is None else threads, memory)
         self.function = None
         self._defects = None
         self._name = None  # of the file, or the expression, for certificates
         made = MadeByCall()
         call = {"progress": progress, "timeout": timeout}
-        kind, content = _understand(source, faces, tags, bounds)
         if kind in ("function", "expression") and (surface or defects):
             raise TypeError(f"{', '.join([*surface, *['defects'] * defects])}: only surfaces have that, and this is a {kind}")
         getattr(self, "_from_" + kind)(content, made, call, {"bounds": bounds, "lipschitz": lipschitz}, surface, defects)

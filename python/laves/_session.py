@@ -28,7 +28,7 @@ class _Call:
         self.functions = functions  # of domains that the library may ask
         self.raised = None  # by the progress callback
         self.expired = False
-        self.signal = None  # (number, frame) of a Ctrl-C that came meanwhile
+        self.signal = None  # (number, frame) of a Ctrl-C that came meanwhile, which only the main thread's call can have
         self.handler = None  # Python's handler of it
 
     def go_on(self, phase, fraction) -> bool:
@@ -54,10 +54,22 @@ def _report(user, phase, fraction):
     if call is None:
         return True
     try:
-        return call.go_on(phase, fraction)
+        goes_on = call.go_on(phase, fraction)
     except BaseException as raised:  # it may not pass through the library; the call raises it in the end
         call.raised = raised
-        return False
+        goes_on = False
+    if not goes_on:
+        for f in call.functions:
+            f.stop()
+    return goes_on
+
+
+def deliver_signals():
+    """For callbacks other than that of progress, which may come more seldom where they are slow."""
+    if threading.current_thread() is threading.main_thread():
+        for call in list(_calls.values()):
+            if call.signal:
+                call.deliver_signal()
 
 
 @contextlib.contextmanager

@@ -142,6 +142,9 @@ static void carve_cells_by_distance(void *user, size_t begin, size_t end, int wo
   }
 }
 
+/* Bricks whose records are made between two looks for a cancel. */
+enum { BRICKS_PER_LOOK = 64 };
+
 /* Bricks and records for what could not be decided. Serial, so that records have the same numbers in every run. */
 static bool make_records(carving *c) {
   laves__lattice *l = c->lattice;
@@ -152,6 +155,8 @@ static bool make_records(carving *c) {
   if (!l->record) return false;
   l->record_capacity = records + records / 8 + 64;
   for (size_t brick = 0; brick < c->list.count; brick++) {
+    if (brick % BRICKS_PER_LOOK == 0 && laves__cancelled(l->context, "classify", (double)brick / (double)c->list.count))
+      return false;
     const int32_t index = (int32_t)l->brick_count++;
     l->directory[slot_of(l, c->list.brick[brick])] = index;
     const int8_t *side = c->cell_side + brick * LAVES__BRICK_CELLS;
@@ -395,8 +400,10 @@ static laves_result evaluate_all(carving *c, laves_error *error) {
     if (!laves__parallel_for(l->context, "classify", count, 4, evaluate_records, c)) return laves__fail_cancelled(error);
     laves__lattice_link(l);
     c->first_record += count;
-    for (size_t i = 0, known = l->record_count; i < known; i++)
+    for (size_t i = 0, known = l->record_count; i < known; i++) {
+      if (laves__cancelled_at(l->context, "classify", i, known)) return laves__fail_cancelled(error);
       if (!seal_record(l, i)) return laves__fail_memory(l->context, error);
+    }
   }
   return LAVES_OK;
 }
@@ -430,7 +437,7 @@ laves_result laves__classify(const laves__frame *frame, laves__lattice *lattice,
     done = !c.out_of_memory &&
            laves__parallel_for(context, "classify", c.list.count, 1, by_distance ? carve_cells_by_distance : carve_cells, &c);
     if (done && !make_records(&c)) {
-      c.out_of_memory = true;
+      c.out_of_memory = !laves__is_cancelled(context);
       done = false;
     }
   }

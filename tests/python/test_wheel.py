@@ -11,6 +11,7 @@ import pathlib
 import shutil
 import subprocess
 import sys
+import tarfile
 import tempfile
 import unittest
 import zipfile
@@ -18,9 +19,13 @@ import zipfile
 import support
 from support import ROOT
 
+import laves
+
 FULL = "--full" in sys.argv
 if FULL:
     sys.argv.remove("--full")
+
+CLEAN = {name: value for name, value in os.environ.items() if not name.startswith(("LAVES_", "PYTHONPATH", "PIP_"))}
 
 TRY = """
 import laves, numpy, pathlib, sys
@@ -45,11 +50,28 @@ class Wheel(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.mkdtemp()
         cls.addClassCleanup(shutil.rmtree, cls.folder)
-        settings = {} if FULL else {"library": os.environ["LAVES_LIBRARY"], "program": os.environ["LAVES_PROGRAM"]}
-        code = f"import laves_build; print(laves_build.build_wheel({cls.folder!r}, {settings!r}))"
-        name = subprocess.check_output([sys.executable, "-c", code], text=True, cwd=ROOT,
-                                       env={**os.environ, "PYTHONPATH": str(ROOT / "python" / "backend")}).split()[-1]
+        if FULL:
+            name = cls.by_pip()
+        else:
+            name = cls.by_backend("build_wheel", {"library": os.environ["LAVES_LIBRARY"], "program": os.environ["LAVES_PROGRAM"]})
         cls.wheel = pathlib.Path(cls.folder, name)
+
+    @classmethod
+    def by_backend(cls, function, *settings):
+        """Calls the backend as pip would; the name of what it made in the folder."""
+        code = f"import laves_build; print(laves_build.{function}({cls.folder!r}, *{settings!r}))"
+        return subprocess.check_output([sys.executable, "-c", code], text=True, cwd=ROOT,
+                                       env={**CLEAN, "PYTHONPATH": str(ROOT / "python" / "backend")}).split()[-1]
+
+    @classmethod
+    def by_pip(cls):
+        """The whole way of pip, by pyproject.toml, from a copy of what is under version control."""
+        name = cls.by_backend("build_sdist")
+        with tarfile.open(pathlib.Path(cls.folder, name)) as archive:
+            archive.extractall(cls.folder)
+        subprocess.check_call([sys.executable, "-m", "pip", "wheel", "--quiet", "--no-index", "--no-deps", "--wheel-dir", cls.folder,
+                               pathlib.Path(cls.folder, name[:-len(".tar.gz")])], env=CLEAN)
+        return next(pathlib.Path(cls.folder).glob("*.whl")).name
 
     def test_content(self):
         self.assertRegex(self.wheel.name, r"^laves-[\d.]+-py3-none-linux_\w+\.whl$")
@@ -71,32 +93,18 @@ class Wheel(unittest.TestCase):
     def test_it_installs_and_works(self):
         home = pathlib.Path(self.folder, "venv")
         subprocess.check_call([sys.executable, "-m", "venv", "--system-site-packages", home])
-        clean = {k: v for k, v in os.environ.items() if not k.startswith(("LAVES_", "PYTHONPATH", "PIP_"))}
         python = home / "bin" / "python"
-        install = [python, "-m", "pip", "install", "--quiet", "--no-index", "--disable-pip-version-check"]
-        if FULL:  # the whole way of pip, by pyproject.toml, from a copy of what is under version control
-            import tarfile
-            backend = {**clean, "PYTHONPATH": str(ROOT / "python" / "backend")}
-            code = f"import laves_build; print(laves_build.build_sdist({self.folder!r}))"
-            name = subprocess.check_output([sys.executable, "-c", code], text=True, cwd=ROOT, env=backend).split()[-1]
-            with tarfile.open(pathlib.Path(self.folder, name)) as archive:
-                archive.extractall(self.folder)
-            subprocess.check_call([*install, pathlib.Path(self.folder, name[:-len(".tar.gz")])], env=clean)
-        else:
-            subprocess.check_call([*install, self.wheel], env=clean)
-        import laves
-        wanted = laves.mesh(support.ball, bounds=[[-1.2] * 3, [1.2] * 3], size=0.2)
-        made = subprocess.check_output([python, "-c", TRY], text=True, env=clean, cwd=self.folder).strip()
-        self.assertEqual(made, laves.mesh(lambda p: support.np.linalg.norm(p, axis=1) - 1, bounds=[[-1.2] * 3, [1.2] * 3], size=0.2).hash)
-        self.assertGreater(wanted.tet_count, 1000)
+        subprocess.check_call([python, "-m", "pip", "install", "--quiet", "--no-index", "--disable-pip-version-check", self.wheel],
+                              env=CLEAN)
+        made = subprocess.check_output([python, "-c", TRY], text=True, env=CLEAN, cwd=self.folder).strip()
+        here = laves.mesh(lambda p: support.np.linalg.norm(p, axis=1) - 1, bounds=support.BOX, size=0.2)
+        self.assertEqual(made, here.hash)
         for command in ([python, "-m", "laves"], [home / "bin" / "laves"]):
-            said = subprocess.run([*command, "--version"], capture_output=True, text=True, env=clean, check=True)
+            said = subprocess.run([*command, "--version"], capture_output=True, text=True, env=CLEAN, check=True)
             self.assertEqual(said.stdout + said.stderr, f"laves {laves.__version__}\n")
 
     def test_source_archive(self):
-        backend = {**os.environ, "PYTHONPATH": str(ROOT / "python" / "backend")}
-        import tarfile
-        subprocess.check_call([sys.executable, "-c", f"import laves_build; laves_build.build_sdist({self.folder!r})"], cwd=ROOT, env=backend)
+        self.by_backend("build_sdist")
         with tarfile.open(next(pathlib.Path(self.folder).glob("*.tar.gz"))) as archive:
             names = archive.getnames()
         base = names[0].split("/")[0]

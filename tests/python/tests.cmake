@@ -1,5 +1,9 @@
-# The Python package, from the source tree, on a shared library of the same objects as the static one; each tests/python/test_*.py is
-# a CTest test. They need a Python with NumPy, which need not be the first on the path.
+# The Python package, from the source tree, on a shared library (laves-shared) of the same objects as the static one; each
+# tests/python/test_*.py is a CTest test. They need a Python with NumPy, which need not be the first on the path. A Python without
+# sanitizers cannot load a library that has them.
+if(LAVES_SANITIZE OR NOT TARGET laves-program)
+  return()
+endif()
 set(LAVES_PYTHON "")
 foreach(candidate ${Python3_EXECUTABLE} /usr/bin/python3)
   if(NOT LAVES_PYTHON)
@@ -10,19 +14,12 @@ foreach(candidate ${Python3_EXECUTABLE} /usr/bin/python3)
   endif()
 endforeach()
 
-add_library(laves-shared SHARED $<TARGET_OBJECTS:laves>)
-target_link_libraries(laves-shared PRIVATE ZLIB::ZLIB ${LUA_LIBRARIES} Threads::Threads m)
-target_link_options(laves-shared PRIVATE -Wl,-Bsymbolic)
-if(LAVES_OPENMP)
-  target_link_libraries(laves-shared PRIVATE OpenMP::OpenMP_C)
-endif()
+set_target_properties(laves-shared laves-callback PROPERTIES EXCLUDE_FROM_ALL OFF)
 
 file(GLOB LAVES_PYTHON_TESTS CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/python/test_*.py)
 foreach(path ${LAVES_PYTHON_TESTS})
   get_filename_component(name ${path} NAME_WE)
-  if(LAVES_SANITIZE) # a Python without sanitizers cannot load the library
-    continue()
-  elseif(LAVES_PYTHON)
+  if(LAVES_PYTHON)
     add_test(NAME python/${name} COMMAND ${LAVES_PYTHON} ${path})
   else()
     add_test(NAME python/${name} COMMAND sh -c "echo 'SKIPPED: there is no Python with NumPy (Debian: python3-numpy)'; exit 77")
