@@ -1,5 +1,6 @@
 """Expressions built by operators and calls, and the text in Lua that they stand for. The vocabulary is in solids.py."""
 import math
+import typing
 
 import numpy
 
@@ -24,62 +25,66 @@ class Expression:
         text = str(self)
         return f"<laves.solids.Expression {text if len(text) < 200 else text[:197] + '...'}>"
 
-    def __add__(self, other):
+    def __add__(self, other) -> "Expression":
         return _binary(self, "+", other, _SUM)
 
-    def __radd__(self, other):
+    def __radd__(self, other) -> "Expression":
         return _binary(other, "+", self, _SUM)
 
-    def __sub__(self, other):
+    def __sub__(self, other) -> "Expression":
         return _binary(self, "-", other, _SUM)
 
-    def __rsub__(self, other):
+    def __rsub__(self, other) -> "Expression":
         return _binary(other, "-", self, _SUM)
 
-    def __mul__(self, other):
+    def __mul__(self, other) -> "Expression":
         return _binary(self, "*", other, _PRODUCT)
 
-    def __rmul__(self, other):
+    def __rmul__(self, other) -> "Expression":
         return _binary(other, "*", self, _PRODUCT)
 
-    def __truediv__(self, other):
+    def __truediv__(self, other) -> "Expression":
         return _binary(self, "/", other, _PRODUCT)
 
-    def __rtruediv__(self, other):
+    def __rtruediv__(self, other) -> "Expression":
         return _binary(other, "/", self, _PRODUCT)
 
-    def __mod__(self, other):
+    def __mod__(self, other) -> "Expression":
         return _binary(self, "%", other, _PRODUCT)
 
-    def __rmod__(self, other):
+    def __rmod__(self, other) -> "Expression":
         return _binary(other, "%", self, _PRODUCT)
 
-    def __pow__(self, other):
+    def __pow__(self, other) -> "Expression":
         return _binary(self, "^", other, _POWER)
 
-    def __rpow__(self, other):
+    def __rpow__(self, other) -> "Expression":
         return _binary(other, "^", self, _POWER)
 
-    def __and__(self, other):
+    def __and__(self, other) -> "Expression":
         return _binary(self, "&", other, _AND)
 
-    def __rand__(self, other):
+    def __rand__(self, other) -> "Expression":
         return _binary(other, "&", self, _AND)
 
-    def __or__(self, other):
+    def __or__(self, other) -> "Expression":
         return _binary(self, "|", other, _OR)
 
-    def __ror__(self, other):
+    def __ror__(self, other) -> "Expression":
         return _binary(other, "|", self, _OR)
 
-    def __invert__(self):
+    def __invert__(self) -> "Expression":
         return Expression(["~", _bracketed(self, _UNARY)], _UNARY)
 
-    def __neg__(self):
+    def __neg__(self) -> "Expression":
         return Expression(["-", _bracketed(self, _UNARY)], _UNARY)
 
-    def __abs__(self):
+    def __abs__(self) -> "Expression":
         return call("abs", [self])
+
+    if typing.TYPE_CHECKING:  # the methods that solids.py adds
+
+        def __getattr__(self, name: str) -> "typing.Callable[..., Expression]": ...
 
     def __bool__(self):
         raise TypeError("a solid is neither true nor false; write a & b, a | b, ~a")

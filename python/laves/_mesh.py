@@ -154,7 +154,7 @@ class Mesh:
 
     def _groups(self, dimension, labels) -> "dict[str, int]":
         named = ((int(tag), lib.laves_mesh_group_name(self.handle.pointer, dimension, int(tag))) for tag in np.unique(labels))
-        return {text_of(name): tag for tag, name in named if name is not None}
+        return {name.decode("utf-8", "replace"): tag for tag, name in named if name is not None}
 
     @property
     def face_groups(self) -> "dict[str, int]":
@@ -303,7 +303,7 @@ class Mesh:
         self._call(lib.laves_certificate_verify, _pointer(domain), domain._name if domain is not None else None,
                    ctypes.byref(certificate._of[1]), differences, len(differences), ctypes.byref(count), domain=domain,
                    progress=progress, timeout=timeout)
-        return [text_of(d.text) for d in differences[:min(count.value, len(differences))]]
+        return [d.text.decode("utf-8", "replace") for d in differences[:min(count.value, len(differences))]]
 
     # ---- out ----
 
@@ -374,6 +374,6 @@ def generate(session: Session, domain: Domain, options: dict, progress, timeout)
     handle = made.handle(session, lib.laves_mesh_free, (domain, keeps))
     mesh = Mesh(session, handle, domain, report, (wished, keeps))
     if missed:
-        said = "; ".join(mesh.report.warnings) or "a wished target was missed"
+        said = "; ".join(Report(report).warnings) or "a wished target was missed"
         warnings.warn(said, errors.TargetMissed, stacklevel=4)
     return mesh

@@ -150,7 +150,7 @@ class Session:
         if call.expired and result == _CANCELLED:
             raise errors.TimeoutError(f"it takes longer than the {timeout:g} seconds that it was given")
         if result > _TARGET_MISSED:
-            raise errors.error_of(result, text_of(error.text))
+            raise errors.error_of(result, text_of(error.text) or "")
         return result == _TARGET_MISSED
 
     @property
