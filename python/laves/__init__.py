@@ -18,13 +18,13 @@ from ._mesh import Certificate, Mesh
 from ._options import fill as _fill
 from ._quality import Quality
 from ._records import Check, DomainInfo, Expectation, FeatureCheck, FileCheck, Place, Report
-from ._session import Session as _Session
+from ._session import Deadline as _Deadline, Session as _Session
 from .errors import (CancelledError, Error, InputError, InternalError, MissingFileError, OptionError, OutOfMemoryError, TargetMissed,
                      TimeoutError, WriteError)
 
 __version__: str = _lib.laves_version().decode()
 
-__all__ = ["mesh", "info", "estimate", "check", "check_file", "read", "tiling", "solids", "Mesh", "Domain", "Defects", "Sizing",
+__all__ = ["mesh", "info", "estimate", "check", "check_file", "read", "tiling", "formats", "format_of", "solids", "Mesh", "Domain", "Defects", "Sizing",
            "Features", "Certificate", "Quality", "Check", "DomainInfo", "Expectation", "FeatureCheck", "FileCheck", "Place", "Report",
            "Error", "OptionError", "InputError", "MissingFileError", "OutOfMemoryError", "WriteError", "CancelledError",
            "TimeoutError", "InternalError", "TargetMissed", "program_path", "__version__"]
@@ -65,6 +65,7 @@ def mesh(source, faces=None, *, threads: "int | None" = None, memory: "int | Non
     timeout: seconds; laves.TimeoutError. Ctrl-C is answered likewise.
 
     Warns laves.TargetMissed when the mesh is valid but a wished target was missed; raises laves.Error."""
+    timeout = _Deadline.of(timeout)
     call = {"threads": threads, "memory": memory or 0, "progress": progress, "timeout": timeout}
     domain = _domain_of(source, faces, options, call)
     apart = {"threads": threads, "memory": memory} if domain is source else {}
@@ -79,6 +80,7 @@ def info(source, faces=None, **options) -> DomainInfo:
 def estimate(source, faces=None, *, threads: "int | None" = None, memory: int = 0, progress=None, timeout: "float | None" = None,
              **options) -> Expectation:
     """What laves.mesh() of the same arguments is likely to hold; a small part of its cost."""
+    timeout = _Deadline.of(timeout)
     call = {"threads": threads, "memory": memory, "progress": progress, "timeout": timeout}
     return _domain_of(source, faces, options, call).estimate(progress=progress, timeout=timeout, **options)
 
@@ -97,6 +99,7 @@ def check(mesh, surface=None, *, progress=None, timeout: "float | None" = None) 
     """What a mesh is: `valid`, topology, quality; with a surface its distances.
 
     mesh: laves.Mesh, or a file of any program.  surface: laves.Domain, or what makes one."""
+    timeout = _Deadline.of(timeout)
     made = mesh if isinstance(mesh, Mesh) else read(mesh, progress=progress, timeout=timeout)
     domain = surface if surface is None or isinstance(surface, Domain) else Domain(surface, progress=progress, timeout=timeout)
     return made.check(domain, progress=progress, timeout=timeout)

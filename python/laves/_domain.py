@@ -86,7 +86,7 @@ class Domain:
     - a file: STL, OBJ, PLY, OFF, Gmsh surfaces, or a Lua script (.lua);
     - an expression, such as "sphere(1) - cylinder{r=0.4}", or one built of `laves.solids`;
     - points, float64 (n, 3), and triangles `faces`, whole numbers (m, 3), with `tags` (m,) if you like;
-    - an object with points and faces: a PyVista surface, a trimesh, a meshio mesh of triangles;
+    - an object with points and faces: a PyVista surface or grid, a trimesh, a meshio mesh of triangles;
     - a function of points, float64 (n, 3), that returns a value for each, float64 (n,): negative inside, zero on the surface. It
       needs `bounds`, (lower, upper): the corners of a box that contains the solid with a little room. `lipschitz`, if known, bounds
       how fast values change per unit of distance, which spares evaluations far from the surface. It is called with batches of up to
@@ -136,9 +136,9 @@ class Domain:
     def _from_file(self, path, made, call, _, surface, defects):
         if not os.path.exists(path):
             raise errors.MissingFileError(f"the file '{os.fsdecode(path)}' does not exist")
-        self._name = path_of(path)
+        self._name = path_of(os.path.abspath(path))  # the current folder may be another one when a certificate is made
         options = self._surface_options(surface, defects)
-        self._call_surface(call, lib.laves_domain_from_file_with, self.session.context, self._name, ctypes.byref(options),
+        self._call_surface(call, lib.laves_domain_from_file_with, self.session.context, path_of(path), ctypes.byref(options),
                            made.argument)
 
     def _from_triangles(self, content, made, call, _, surface, defects):
@@ -287,6 +287,8 @@ def _triangles(points, faces, tags):
 
 def _surface_of(source):
     """Points, triangles and tags of an object that has some; None: it has none."""
+    if hasattr(source, "extract_surface") and not hasattr(source, "faces"):  # PyVista, of cells
+        source = source.extract_surface()
     if hasattr(source, "vertices") and hasattr(source, "faces"):  # trimesh
         return source.vertices, source.faces, None
     if hasattr(source, "points") and hasattr(source, "cells_dict"):  # meshio

@@ -19,12 +19,24 @@ _calls: "dict[int, _Call]" = {}  # that are running, by the number of their sess
 _numbers = itertools.count(1)
 
 
+class Deadline:
+    """A time limit that several calls share."""
+
+    def __init__(self, seconds):
+        self.seconds = seconds
+        self.end = time.monotonic() + seconds
+
+    @classmethod
+    def of(cls, timeout):
+        return timeout if timeout is None or isinstance(timeout, cls) else cls(timeout)
+
+
 class _Call:
     """One call of the library while it lasts."""
 
     def __init__(self, progress, timeout, functions):
         self.progress = progress
-        self.deadline = None if timeout is None else time.monotonic() + timeout
+        self.deadline = Deadline.of(timeout)
         self.functions = functions  # of domains that the library may ask
         self.raised = None  # by the progress callback
         self.expired = False
@@ -37,7 +49,7 @@ class _Call:
             self.deliver_signal()
         if any(f.raised for f in self.functions):
             return False
-        if self.deadline is not None and time.monotonic() > self.deadline:
+        if self.deadline and time.monotonic() > self.deadline.end:
             self.expired = True
             return False
         return self.progress is None or self.progress(text_of(phase), fraction) is not False
@@ -148,7 +160,7 @@ class Session:
         if raised:
             raise raised
         if call.expired and result == _CANCELLED:
-            raise errors.TimeoutError(f"it takes longer than the {timeout:g} seconds that it was given")
+            raise errors.TimeoutError(f"it takes longer than the {call.deadline.seconds:g} seconds that it was given")
         if result > _TARGET_MISSED:
             raise errors.error_of(result, text_of(error.text) or "")
         return result == _TARGET_MISSED

@@ -61,7 +61,8 @@ class Sources(unittest.TestCase):
         quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
         polygons = types.SimpleNamespace(points=self.points, faces=np.array([n for q in quads for n in (4, *q)]))
         meshio = types.SimpleNamespace(points=self.points, cells_dict={"triangle": self.faces})
-        for source in (trimesh, pyvista, polygons, meshio):
+        grid = types.SimpleNamespace(points=self.points, cells_dict={10: None}, extract_surface=lambda: pyvista)
+        for source in (trimesh, pyvista, polygons, meshio, grid):
             self.assertEqual(laves.mesh(source, size=0.1).hash, self.hash)
         with self.assertRaisesRegex(laves.InputError, "no triangles"):
             laves.mesh(types.SimpleNamespace(points=self.points, cells_dict={}))
@@ -151,27 +152,27 @@ class Options(unittest.TestCase):
         self.assertGreater((part.regions == part.region_groups["core"]).sum(), 100)
 
     def test_sizing(self):
-        uniform = laves.mesh("sphere(1)", size=0.3)
-        for sizing in ("0.1 + 0.3 * d", 0.1 + 0.3 * solids.d, laves.Sizing().points([[1, 0, 0]], 0.05).expression("0.3"),
-                       laves.Sizing().curve([[1, 0, 0], [0, 1, 0]], size=0.05, radius=0.1)):
-            mesh = laves.mesh("sphere(1)", size=0.3, sizing=sizing)
+        uniform = laves.mesh("sphere(1)", size=0.4)
+        for sizing in ("0.2 + 0.3 * d", 0.2 + 0.3 * solids.d, laves.Sizing().points([[1, 0, 0]], 0.1).expression("0.4"),
+                       laves.Sizing().curve([[1, 0, 0], [0, 1, 0]], size=0.1, radius=0.1)):
+            mesh = laves.mesh("sphere(1)", size=0.4, sizing=sizing)
             self.assertGreater(mesh.tet_count, uniform.tet_count)
             self.assertTrue(mesh.check().valid)
         points, faces, tags = cube()
-        tagged = laves.mesh(points, faces, tags=tags, size=0.3, sizing=laves.Sizing().tag(2, 0.05))
-        self.assertGreater(tagged.tet_count, 2000)
+        tagged = laves.mesh(points, faces, tags=tags, size=0.4, sizing=laves.Sizing().tag(2, 0.1))
+        self.assertGreater(tagged.tet_count, laves.mesh(points, faces, size=0.4).tet_count)
         with tempfile.TemporaryDirectory() as folder:
             curve, script = pathlib.Path(folder, "curve.txt"), pathlib.Path(folder, "size.lua")
             curve.write_text("1 0 0\n0 1 0\n")
-            script.write_text("return 0.1 + 0.3 * d")
-            self.assertGreater(laves.mesh("sphere(1)", size=0.3, sizing=laves.Sizing().curve_file(curve, 0.05)).tet_count, uniform.tet_count)
-            self.assertEqual(laves.mesh("sphere(1)", size=0.3, sizing=laves.Sizing().script(script)).hash,
-                             laves.mesh("sphere(1)", size=0.3, sizing="0.1 + 0.3 * d").hash)
+            script.write_text("return 0.2 + 0.3 * d")
+            self.assertGreater(laves.mesh("sphere(1)", size=0.4, sizing=laves.Sizing().curve_file(curve, 0.1)).tet_count, uniform.tet_count)
+            self.assertEqual(laves.mesh("sphere(1)", size=0.4, sizing=laves.Sizing().script(script)).hash,
+                             laves.mesh("sphere(1)", size=0.4, sizing="0.2 + 0.3 * d").hash)
             image = pathlib.Path(folder, "size.nrrd")
             image.write_bytes(b"NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nspace origin: (-1,-1,-1)\nspace directions: (2,0,0) (0,2,0) (0,0,2)\n"
                               b"space dimension: 3\nendian: little\nencoding: raw\n\n".replace(b"dimension: 3\nsizes", b"dimension: 3\nspace dimension: 3\nsizes")
-                              .replace(b"space dimension: 3\nendian", b"endian") + np.full(8, 0.1, "<f4").tobytes())
-            self.assertGreater(laves.mesh("sphere(1)", size=0.3, sizing=laves.Sizing().background(image)).tet_count, uniform.tet_count)
+                              .replace(b"space dimension: 3\nendian", b"endian") + np.full(8, 0.2, "<f4").tobytes())
+            self.assertGreater(laves.mesh("sphere(1)", size=0.4, sizing=laves.Sizing().background(image)).tet_count, uniform.tet_count)
         with self.assertRaises(laves.InputError):
             laves.Sizing().expression("0.1 +")
         with self.assertRaises(laves.OptionError):
@@ -341,6 +342,17 @@ class Program(unittest.TestCase):
                 self.assertTrue(mesh.certificate.promise_holds)
                 again = laves.read(theirs)
                 self.assertEqual(again.hash, mesh.hash)
+
+    def test_certificates_from_another_folder(self):
+        before = os.getcwd()
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(KNOT.parent)
+            try:
+                mesh = laves.mesh(KNOT.name, tets=2000)
+                os.chdir(folder)
+                self.assertEqual((mesh.certificate.input_name, len(mesh.certificate.input_hash)), (KNOT.name, 64))
+            finally:
+                os.chdir(before)
 
     def test_python_m_laves(self):
         import sys
