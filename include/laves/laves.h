@@ -93,7 +93,9 @@ typedef struct laves_context_options {
   void *reallocate_user;
   laves_progress_fn *progress;  ///< NULL: none
   void *progress_user;
-  uint32_t cookie;  ///< set by laves_context_options_default(), checked by laves_context_create()
+  double progress_interval;  ///< seconds that lie between two calls of `progress` within a phase, at least, as where each is dear
+                             ///< because it enters an interpreter; a cancel is answered so much later; default 0: none
+  uint32_t cookie;           ///< set by laves_context_options_default(), checked by laves_context_create()
 } laves_context_options;
 
 LAVES_API laves_context_options laves_context_options_default(void);

@@ -194,6 +194,7 @@ class laves_context_options(Structure):
         ("reallocate_user", c_void_p),
         ("progress", laves_progress_fn),
         ("progress_user", c_void_p),
+        ("progress_interval", c_double),
         ("cookie", c_uint32),
     ]
 

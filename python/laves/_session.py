@@ -12,10 +12,14 @@ import time
 from . import _header, errors
 from ._library import lib, text_of
 
+# Seconds between two reports of progress, which cost some microseconds each; a cancel may be heard so much later.
+PROGRESS_INTERVAL = 0.02
+
 _CANCELLED = _header.CONSTANTS["LAVES_ERROR_CANCELLED"]
 _TARGET_MISSED = _header.CONSTANTS["LAVES_TARGET_MISSED"]
 
 _calls: "dict[int, _Call]" = {}  # that are running, by the number of their session
+noted: "list[_Call]" = []  # those to which a Ctrl-C came that is not delivered yet
 _numbers = itertools.count(1)
 
 
@@ -57,6 +61,7 @@ class _Call:
     def deliver_signal(self):
         number, frame = self.signal
         self.signal = None
+        noted.remove(self)
         self.handler(number, frame)  # KeyboardInterrupt, unless the user's handler does otherwise
 
 
@@ -77,11 +82,11 @@ def _report(user, phase, fraction):
 
 
 def deliver_signals():
-    """For callbacks other than that of progress, which may come more seldom where they are slow."""
+    """For callbacks other than that of progress, which may come more seldom where they are slow: to be called where `noted` holds
+    something."""
     if threading.current_thread() is threading.main_thread():
-        for call in list(_calls.values()):
-            if call.signal:
-                call.deliver_signal()
+        for call in list(noted):
+            call.deliver_signal()
 
 
 @contextlib.contextmanager
@@ -94,6 +99,8 @@ def _deferred_interrupt(call):
     call.handler = handler
 
     def note(number, frame):
+        if call.signal is None:
+            noted.append(call)
         call.signal = (number, frame)
 
     signal.signal(signal.SIGINT, note)
@@ -115,6 +122,7 @@ class Session:
         self.number = next(_numbers)
         options.progress = _report
         options.progress_user = self.number
+        options.progress_interval = PROGRESS_INTERVAL
         self.context = lib.laves_context_create(ctypes.byref(options))
         if not self.context:
             raise errors.OutOfMemoryError("there is no memory for a context")
