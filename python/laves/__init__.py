@@ -24,10 +24,11 @@ from .errors import (CancelledError, Error, InputError, InternalError, MissingFi
 
 __version__: str = _lib.laves_version().decode()
 
-__all__ = ["mesh", "info", "estimate", "check", "check_file", "read", "tiling", "formats", "format_of", "solids", "Mesh", "Domain", "Defects", "Sizing",
-           "Features", "Certificate", "Quality", "Check", "DomainInfo", "Expectation", "FeatureCheck", "FileCheck", "Place", "Report",
-           "Error", "OptionError", "InputError", "MissingFileError", "OutOfMemoryError", "WriteError", "CancelledError",
-           "TimeoutError", "InternalError", "TargetMissed", "program_path", "__version__"]
+__all__ = ["mesh", "info", "estimate", "check", "check_file", "read", "tiling", "formats", "format_of", "solids", "Mesh",
+           "Domain", "Defects", "Sizing", "Features", "Certificate", "Quality", "Check", "DomainInfo", "Expectation",
+           "FeatureCheck", "FileCheck", "Place", "Report", "Error", "OptionError", "InputError", "MissingFileError",
+           "OutOfMemoryError", "WriteError", "CancelledError", "TimeoutError", "InternalError", "TargetMissed", "program_path",
+           "__version__"]
 
 _DOMAIN_OPTIONS = ("tags", "bounds", "lipschitz", "defects", "winding", "close_holes", "overlap")
 
@@ -60,8 +61,9 @@ def mesh(source, faces=None, *, threads: "int | None" = None, memory: "int | Non
     features: laves.Features.  feature_angle: sharper edges are kept, degrees, 0: none.  feature_tags.
     align: "none", "pca", or a rotation matrix (3, 3).  regions: "none", "parts".  face_sources.  streamed.
 
-    threads: 0: one per core, which is the default but for functions of Python: 1.  memory: bytes that may be held, 0: no limit.  progress: called as progress(phase, fraction), from
-    the calling thread; returning False cancels within about 0.2 seconds (laves.CancelledError), and so does what it raises.
+    threads: 0: one per core, which is the default but for functions of Python: 1.  memory: bytes that may be held, 0: no limit.
+    progress: called as progress(phase, fraction), from the calling thread, fifty times a second at most; returning False cancels
+    within about 0.2 seconds (laves.CancelledError), and so does what it raises.
     timeout: seconds; laves.TimeoutError. Ctrl-C is answered likewise.
 
     Warns laves.TargetMissed when the mesh is valid but a wished target was missed; raises laves.Error."""

@@ -132,20 +132,24 @@ class Vocabulary(unittest.TestCase):
     def test_everything_can_be_made(self):
         s = solids
         ball, field = s.sphere(1), s.x ** 2 + s.y ** 2 + s.z ** 2 - 1
-        made = [s.ellipsoid(1, 2, 3), s.box(1), s.box(1, 2), s.box(1, z=3), s.rounded_box(1, 1, 1, r=0.2), s.cylinder(1, h=2), s.capsule(1, 2),
-                s.cone(1, 2), s.cone(r=1, h=2, r2=0.5), s.torus(2, r=0.5), s.halfspace("x", 0.2) & ball, s.plane((1, 1, 1)) & ball,
-                s.halfspace() & ball, s.plane(offset=0.1) & ball,
-                s.metaballs(support.np.array([[0, 0, 0, 1], [1, 0, 0, 0.5]]), sharpness=2), s.union(ball, s.box(1)), s.union([ball, s.box(1)]),
-                s.intersection(ball, s.box(1)), s.difference(ball, s.box(1)), s.smooth_union(ball, s.box(1.8), 0.2),
-                s.smooth_intersection(ball, s.box(1.8), 0.2), ball.smooth_difference(s.box(1), 0.1), s.complement(~ball), s.morph(ball, s.box(1), 0.5),
-                ball.offset(0.5), ball.offset(distance=-0.5), ball.shell(0.2), ball.bounds((-1, -1, 0), (1, 1, 1)), ball.move(1, 2, 3),
-                ball.move((1, 2, 3)), ball.translate(by="z"), ball.move(support.np.ones(3)), s.box(1).rotate(30), s.box(1).rotate(30, axis=(1, 1, 0)),
-                ball.scale(2), ball.scale(1, 2, 3), ball.mirror("x"), ball.mirror(normal=(1, 0, 0)), ball.repeat_linear((1, 0, 0), 3),
-                ball.repeat_grid(step=(1, 1, 1), count=(2, 2, 1)), ball.move(2, 0, 0).repeat_polar(4), ball.move(0, 2, 0).repeat_polar(4, axis="x", angle=180),
-                s.bounds(ball.warp(s.x, s.y * 2, s.z), (-2, -2, -2), (2, 2, 2)), ball.keep(points=[[0, 0, 1]], lines=[[[1, 0, 0], [0, 0, 1]]]),
-                s.tag("a", ball), ball.region("b"), s.surface(ROOT / "demo" / "knot.ply"), field, s.solid(field),
-                s.max(field, s.min(s.x, s.y, s.z, 5)), s.sqrt(s.x ** 2 + s.y ** 2 + s.z ** 2) - 1, s.length(s.x, s.y, s.z) - 1,
-                abs(s.x) + s.abs(s.y) + abs(s.z) - 1, s.pow(s.x, 4) + s.y ** 4 + s.z ** 4 - 1, s.field(ball) - 0.5,
+        made = [s.ellipsoid(1, 2, 3), s.box(1), s.box(1, 2), s.box(1, z=3), s.rounded_box(1, 1, 1, r=0.2), s.cylinder(1, h=2),
+                s.capsule(1, 2), s.cone(1, 2), s.cone(r=1, h=2, r2=0.5), s.torus(2, r=0.5), s.halfspace("x", 0.2) & ball,
+                s.plane((1, 1, 1)) & ball, s.halfspace() & ball, s.plane(offset=0.1) & ball,
+                s.metaballs(support.np.array([[0, 0, 0, 1], [1, 0, 0, 0.5]]), sharpness=2), s.union(ball, s.box(1)),
+                s.union([ball, s.box(1)]), s.intersection(ball, s.box(1)), s.difference(ball, s.box(1)),
+                s.smooth_union(ball, s.box(1.8), 0.2), s.smooth_intersection(ball, s.box(1.8), 0.2),
+                ball.smooth_difference(s.box(1), 0.1), s.complement(~ball), s.morph(ball, s.box(1), 0.5), ball.offset(0.5),
+                ball.offset(distance=-0.5), ball.shell(0.2), ball.bounds((-1, -1, 0), (1, 1, 1)), ball.move(1, 2, 3),
+                ball.move((1, 2, 3)), ball.translate(by="z"), ball.move(support.np.ones(3)), s.box(1).rotate(30),
+                s.box(1).rotate(30, axis=(1, 1, 0)), ball.scale(2), ball.scale(1, 2, 3), ball.mirror("x"),
+                ball.mirror(normal=(1, 0, 0)), ball.repeat_linear((1, 0, 0), 3),
+                ball.repeat_grid(step=(1, 1, 1), count=(2, 2, 1)), ball.move(2, 0, 0).repeat_polar(4),
+                ball.move(0, 2, 0).repeat_polar(4, axis="x", angle=180),
+                s.bounds(ball.warp(s.x, s.y * 2, s.z), (-2, -2, -2), (2, 2, 2)),
+                ball.keep(points=[[0, 0, 1]], lines=[[[1, 0, 0], [0, 0, 1]]]), s.tag("a", ball), ball.region("b"),
+                s.surface(ROOT / "demo" / "knot.ply"), field, s.solid(field), s.max(field, s.min(s.x, s.y, s.z, 5)),
+                s.sqrt(s.x ** 2 + s.y ** 2 + s.z ** 2) - 1, s.length(s.x, s.y, s.z) - 1, abs(s.x) + s.abs(s.y) + abs(s.z) - 1,
+                s.pow(s.x, 4) + s.y ** 4 + s.z ** 4 - 1, s.field(ball) - 0.5,
                 s.bounds(s.sin(4 * s.x) + s.cos(4 * s.y) + 0 * s.tan(s.z / 4) - 0.5, (-1, -1, -1), (1, 1, 1)),
                 s.bounds(s.exp(s.x) - s.log(s.y + 4) + s.atan2(s.z, 2) + s.asin(s.x / 4) - s.acos(s.y / 4), (-1, -1, -1), (1, 1, 1)),
                 s.bounds(s.floor(s.x * 2) + s.ceil(s.y) + s.mod(s.z, 0.5) + s.z % 0.3, (-1, -1, -1), (1, 1, 1))]
@@ -163,7 +167,8 @@ class Vocabulary(unittest.TestCase):
         px, py, pz = p.T
         for ours, right in ((x - y - z, px - py - pz), (x - (y - z), px - (py - pz)), (x / y / z, px / py / pz), (x / (y * z), px / (py * pz)),
                             (x ** y ** z, px ** py ** pz), ((x ** y) ** z, (px ** py) ** pz), (-x ** 2, -px ** 2), ((-x) ** 2, (-px) ** 2),
-                            (2 - x, 2 - px), (2 / x, 2 / px), (2 ** x, 2 ** px), (2 * -x, 2 * -px), (x - -2, px + 2), (x * (y + z) - 1, px * (py + pz) - 1),
+                            (2 - x, 2 - px), (2 / x, 2 / px), (2 ** x, 2 ** px), (2 * -x, 2 * -px), (x - -2, px + 2),
+                            (x * (y + z) - 1, px * (py + pz) - 1),
                             (5 % x, 5 % px), (x % 0.3, px % 0.3), (1e-300 + x, px), (support.np.float64(2) * x, 2 * px), (-(x + y), -(px + py))):
             level = float(support.np.median(right)) + 1e-9
             domain = laves.Domain(solids.bounds(ours - level, (0, 0, 0), (1, 1, 1)))

@@ -165,13 +165,14 @@ class Options(unittest.TestCase):
             curve, script = pathlib.Path(folder, "curve.txt"), pathlib.Path(folder, "size.lua")
             curve.write_text("1 0 0\n0 1 0\n")
             script.write_text("return 0.2 + 0.3 * d")
-            self.assertGreater(laves.mesh("sphere(1)", size=0.4, sizing=laves.Sizing().curve_file(curve, 0.1)).tet_count, uniform.tet_count)
+            by_file = laves.Sizing().curve_file(curve, 0.1)
+            self.assertGreater(laves.mesh("sphere(1)", size=0.4, sizing=by_file).tet_count, uniform.tet_count)
             self.assertEqual(laves.mesh("sphere(1)", size=0.4, sizing=laves.Sizing().script(script)).hash,
                              laves.mesh("sphere(1)", size=0.4, sizing="0.2 + 0.3 * d").hash)
             image = pathlib.Path(folder, "size.nrrd")
-            image.write_bytes(b"NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nspace origin: (-1,-1,-1)\nspace directions: (2,0,0) (0,2,0) (0,0,2)\n"
-                              b"space dimension: 3\nendian: little\nencoding: raw\n\n".replace(b"dimension: 3\nsizes", b"dimension: 3\nspace dimension: 3\nsizes")
-                              .replace(b"space dimension: 3\nendian", b"endian") + np.full(8, 0.2, "<f4").tobytes())
+            header = ("NRRD0004", "type: float", "dimension: 3", "space dimension: 3", "sizes: 2 2 2", "space origin: (-1,-1,-1)",
+                      "space directions: (2,0,0) (0,2,0) (0,0,2)", "endian: little", "encoding: raw", "", "")
+            image.write_bytes("\n".join(header).encode() + np.full(8, 0.2, "<f4").tobytes())
             self.assertGreater(laves.mesh("sphere(1)", size=0.4, sizing=laves.Sizing().background(image)).tet_count, uniform.tet_count)
         with self.assertRaises(laves.InputError):
             laves.Sizing().expression("0.1 +")
