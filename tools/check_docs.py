@@ -10,7 +10,7 @@ KEY = re.compile(r"\[([a-z]+\d{4}|isotropic-tcp|iso\d+)\]")
 
 
 def files(*patterns):
-    folders = ("src", "cli", "docs", "tools", "tests", "demo", "bench", "examples")
+    folders = ("src", "cli", "docs", "python", "tools", "tests", "demo", "bench", "examples")
     found = list(ROOT.glob("*.md"))
     for pattern in patterns:
         found += [path for folder in folders for path in (ROOT / folder).rglob(pattern)]

@@ -93,7 +93,9 @@ typedef struct laves_context_options {
   void *reallocate_user;
   laves_progress_fn *progress;  ///< NULL: none
   void *progress_user;
-  uint32_t cookie;  ///< set by laves_context_options_default(), checked by laves_context_create()
+  double progress_interval;  ///< seconds that lie between two calls of `progress` within a phase, at least, as where each is dear
+                             ///< because it enters an interpreter; a cancel is answered so much later; default 0: none
+  uint32_t cookie;           ///< set by laves_context_options_default(), checked by laves_context_create()
 } laves_context_options;
 
 LAVES_API laves_context_options laves_context_options_default(void);
@@ -172,7 +174,7 @@ LAVES_API laves_result laves_domain_from_triangles_with(laves_context *context, 
 /// A solid given by a function of the caller's.
 typedef struct laves_function {
   /// values[i] = phi(points[3i..3i+2]) for i < count: negative inside, zero on the surface, positive outside; finite.
-  /// Called from several threads at once, with counts of one to a few thousand.
+  /// Called from several threads at once, with counts of one to some hundred: as many as can be asked for at a time.
   void (*evaluate)(void *user, const double *points, size_t count, double *values);
   void *user;
   double lower[3], upper[3];  ///< a box that contains the solid with a little room

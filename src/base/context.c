@@ -118,9 +118,19 @@ bool laves__grow(laves_context *context, void *block, size_t *capacity, size_t n
   return true;
 }
 
+/* Whether the callback was called for this phase less than the wished time ago. */
+static bool is_too_soon(laves_context *context, const char *phase) {
+  if (!(context->options.progress_interval > 0)) return false;
+  const double now = laves__wall_seconds();
+  if (phase == context->phase && now - context->told < context->options.progress_interval) return true;
+  context->phase = phase;
+  context->told = now;
+  return false;
+}
+
 bool laves__cancelled(laves_context *context, const char *phase, double fraction) {
   if (atomic_load(&context->cancelled)) return true;
-  if (!context->options.progress || !phase) return false;
+  if (!context->options.progress || !phase || is_too_soon(context, phase)) return false;
   if (context->options.progress(context->options.progress_user, phase, fraction)) return false;
   atomic_store(&context->cancelled, true);
   return true;
@@ -128,4 +138,7 @@ bool laves__cancelled(laves_context *context, const char *phase, double fraction
 
 bool laves__is_cancelled(const laves_context *context) { return atomic_load(&context->cancelled); }
 
-void laves__progress_reset(laves_context *context) { atomic_store(&context->cancelled, false); }
+void laves__progress_reset(laves_context *context) {
+  atomic_store(&context->cancelled, false);
+  context->phase = NULL;
+}

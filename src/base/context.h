@@ -11,6 +11,8 @@ struct laves_context {
   int worker_count;
   atomic_size_t bytes, peak;
   atomic_bool cancelled;
+  const char *phase; /* of the last call of the progress callback, and when it was; NULL: none since the last reset */
+  double told;
 };
 
 /* How many workers a wish for `thread_count` gives: itself, or one per core for 0. */

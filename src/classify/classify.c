@@ -9,6 +9,8 @@
  *
  * Departure from the paper (section 4.3): it classifies tiles by their circumspheres on a grid of distances; we ask the
  * domain itself, and only where it matters. */
+#include <string.h>
+
 #include "classify/classify.h"
 
 #include "classify/classify_graph.h"
@@ -140,6 +142,9 @@ static void carve_cells_by_distance(void *user, size_t begin, size_t end, int wo
   }
 }
 
+/* Bricks whose records are made between two looks for a cancel. */
+enum { BRICKS_PER_LOOK = 64 };
+
 /* Bricks and records for what could not be decided. Serial, so that records have the same numbers in every run. */
 static bool make_records(carving *c) {
   laves__lattice *l = c->lattice;
@@ -150,6 +155,8 @@ static bool make_records(carving *c) {
   if (!l->record) return false;
   l->record_capacity = records + records / 8 + 64;
   for (size_t brick = 0; brick < c->list.count; brick++) {
+    if (brick % BRICKS_PER_LOOK == 0 && laves__cancelled(l->context, "classify", (double)brick / (double)c->list.count))
+      return false;
     const int32_t index = (int32_t)l->brick_count++;
     l->directory[slot_of(l, c->list.brick[brick])] = index;
     const int8_t *side = c->cell_side + brick * LAVES__BRICK_CELLS;
@@ -222,15 +229,24 @@ static void evaluate_by_distance(const laves__frame *frame, laves__record *r) {
   }
 }
 
-static void evaluate_record(const laves__frame *frame, laves__record *r) {
-  if (frame->oracle->is_distance) {
-    evaluate_by_distance(frame, r);
-  } else {
-    laves__vec3 at[LAVES__C15_SITES];
-    for (int site = 0; site < LAVES__C15_SITES; site++) at[site] = laves__site_position(r->xyz, site);
-    r->hint[0] = LAVES__NO_HINT;
-    laves__frame_evaluate(frame, LAVES__C15_SITES, at, r->phi, r->hint);
+/* Cells whose sites are asked in one call, for oracles that like large ones. */
+enum { TOGETHER = 16 };
+
+static void evaluate_together(const laves__frame *frame, laves__record *records, size_t count) {
+  laves__vec3 at[TOGETHER * LAVES__C15_SITES];
+  double phi[TOGETHER * LAVES__C15_SITES];
+  uint32_t hint[TOGETHER * LAVES__C15_SITES] = {LAVES__NO_HINT};
+  for (size_t i = 0; i < count; i++)
+    for (int site = 0; site < LAVES__C15_SITES; site++)
+      at[i * LAVES__C15_SITES + (size_t)site] = laves__site_position(records[i].xyz, site);
+  laves__frame_evaluate(frame, count * LAVES__C15_SITES, at, phi, hint);
+  for (size_t i = 0; i < count; i++) {
+    memcpy(records[i].phi, phi + i * LAVES__C15_SITES, sizeof records[i].phi);
+    memcpy(records[i].hint, hint + i * LAVES__C15_SITES, sizeof records[i].hint);
   }
+}
+
+static void set_signs(laves__record *r) {
   for (int site = 0; site < LAVES__C15_SITES; site++) {
     if (isnan(r->phi[site])) r->phi[site] = HUGE_VAL; /* what has no value is not inside */
     r->sign[site] = r->label[site] = r->phi[site] < 0 ? -1 : 1;
@@ -240,7 +256,17 @@ static void evaluate_record(const laves__frame *frame, laves__record *r) {
 static void evaluate_records(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   carving *c = user;
-  for (size_t i = begin; i < end; i++) evaluate_record(c->frame, &c->lattice->record[c->first_record + i]);
+  laves__record *records = c->lattice->record + c->first_record;
+  const laves__oracle *oracle = c->frame->oracle;
+  const size_t together = oracle->batch > 0 && !oracle->is_distance ? TOGETHER : 1;
+  for (size_t i = begin; i < end; i += together) {
+    const size_t count = end - i < together ? end - i : together;
+    if (oracle->is_distance)
+      evaluate_by_distance(c->frame, &records[i]);
+    else
+      evaluate_together(c->frame, &records[i], count);
+    for (size_t k = i; k < i + count; k++) set_signs(&records[k]);
+  }
 }
 
 /* ---- sealing: what an inconsistent oracle may leave open ---- */
@@ -374,8 +400,10 @@ static laves_result evaluate_all(carving *c, laves_error *error) {
     if (!laves__parallel_for(l->context, "classify", count, 4, evaluate_records, c)) return laves__fail_cancelled(error);
     laves__lattice_link(l);
     c->first_record += count;
-    for (size_t i = 0, known = l->record_count; i < known; i++)
+    for (size_t i = 0, known = l->record_count; i < known; i++) {
+      if (laves__cancelled_at(l->context, "classify", i, known)) return laves__fail_cancelled(error);
       if (!seal_record(l, i)) return laves__fail_memory(l->context, error);
+    }
   }
   return LAVES_OK;
 }
@@ -409,7 +437,7 @@ laves_result laves__classify(const laves__frame *frame, laves__lattice *lattice,
     done = !c.out_of_memory &&
            laves__parallel_for(context, "classify", c.list.count, 1, by_distance ? carve_cells_by_distance : carve_cells, &c);
     if (done && !make_records(&c)) {
-      c.out_of_memory = true;
+      c.out_of_memory = !laves__is_cancelled(context);
       done = false;
     }
   }

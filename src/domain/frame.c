@@ -1,7 +1,13 @@
 /* Coordinates between the lattice and the domain. */
 #include "domain/frame.h"
 
-enum { CHUNK = 64 };
+/* Points that are turned at once; more where the oracle likes more. */
+enum { CHUNK = 64, CHUNK_MAX = 512 };
+
+static size_t chunk_of(const laves__oracle *oracle) {
+  const size_t wanted = oracle->batch < CHUNK_MAX ? oracle->batch : CHUNK_MAX;
+  return wanted > CHUNK ? wanted : CHUNK;
+}
 
 laves__vec3 laves__frame_to_local(const laves__frame *frame, laves__vec3 lattice) {
   return v3_mad(frame->centre, m3_mul(&frame->rotation, lattice), frame->size);
@@ -27,10 +33,11 @@ laves__box3 laves__frame_bounds(const laves__frame *frame) {
 }
 
 void laves__frame_evaluate(const laves__frame *frame, size_t count, const laves__vec3 *points, double *phi, uint32_t *hints) {
-  laves__vec3 local[CHUNK];
+  laves__vec3 local[CHUNK_MAX];
+  const size_t chunk = chunk_of(frame->oracle);
   const double per_size = 1 / frame->size;
-  for (size_t begin = 0; begin < count; begin += CHUNK) {
-    const size_t n = count - begin < CHUNK ? count - begin : CHUNK;
+  for (size_t begin = 0; begin < count; begin += chunk) {
+    const size_t n = count - begin < chunk ? count - begin : chunk;
     for (size_t i = 0; i < n; i++) local[i] = laves__frame_to_local(frame, points[begin + i]);
     if (hints && begin > 0) hints[begin] = hints[begin - 1];
     frame->oracle->evaluate(frame->oracle->self, n, local, phi + begin, hints ? hints + begin : NULL);
@@ -51,9 +58,10 @@ bool laves__frame_project(const laves__frame *frame, laves__vec3 point, double r
 
 void laves__frame_project_many(const laves__frame *frame, size_t count, const laves__vec3 *points, double reach,
                                laves__projection *answers) {
-  laves__vec3 local[CHUNK];
-  for (size_t begin = 0; begin < count; begin += CHUNK) {
-    const size_t n = count - begin < CHUNK ? count - begin : CHUNK;
+  laves__vec3 local[CHUNK_MAX];
+  const size_t chunk = chunk_of(frame->oracle);
+  for (size_t begin = 0; begin < count; begin += chunk) {
+    const size_t n = count - begin < chunk ? count - begin : chunk;
     for (size_t i = 0; i < n; i++) local[i] = laves__frame_to_local(frame, points[begin + i]);
     laves__project_many(frame->oracle, n, local, reach * frame->size, answers + begin);
     for (laves__projection *a = answers + begin; a < answers + begin + n; a++) {

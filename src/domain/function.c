@@ -5,7 +5,12 @@
  * Nothing is known of the function but its values. A value that is not a number counts as outside. `project` takes Newton steps
  * along the gradient, found by central differences; as soon as two points with different signs are known it halves the stretch
  * between them, so that it ends on the surface however the function bends. With a Lipschitz constant L, |phi| > L r says that the
- * ball of radius r holds no surface; without one every ball inside the box is undecided. */
+ * ball of radius r holds no surface; without one every ball inside the box is undecided.
+ *
+ * A call of the callback may cost far more than what it computes, as where it is an interpreter's. So all points that are
+ * projected go their ways in step: each says where it must know phi next, the callback is asked for all of them at once, and each
+ * goes on with its answer. No way depends on another. A way that goes alone asks for the
+ * gradient along with the value, as it is likely to be wanted next. */
 #include <string.h>
 
 #include "domain/oracle.h"
@@ -20,7 +25,7 @@ static const double much = 0.1;
 /* Relative room for the rounding of the caller's values when a ball is judged. */
 static const double side_margin = 1e-9;
 
-enum { NEWTON_MAX = 30, BISECTION_MAX = 60, SEARCH_STEPS = 16, BATCH = 64 };
+enum { NEWTON_MAX = 30, BISECTION_MAX = 60, SEARCH_STEPS = 16, BATCH = 512, WAYS = 256, SLOPE_POINTS = 6 };
 
 typedef struct solid {
   laves_function function;
@@ -49,16 +54,43 @@ static double value(const solid *s, laves__vec3 p) {
   return phi;
 }
 
-static laves__vec3 gradient(const solid *s, laves__vec3 p) {
-  const double h = difference_step * s->diagonal;
-  laves__vec3 points[6];
-  double phi[6];
-  for (int i = 0; i < 6; i++) {
-    const double d = i % 2 == 0 ? h : -h;
-    points[i] = v3_add(p, v3(i / 2 == 0 ? d : 0, i / 2 == 1 ? d : 0, i / 2 == 2 ? d : 0));
-  }
-  evaluate(s, 6, points, phi, NULL);
-  return v3_scale(v3(phi[0] - phi[1], phi[2] - phi[3], phi[4] - phi[5]), 0.5 / h);
+/* ---- projection: the ways of points to the surface ---- */
+
+/* What a way waits for: phi at one point, or at the six about a point that tell its gradient. */
+typedef enum wait {
+  AT_START,       /* phi of the point itself */
+  SLOPE_AT_START, /* its gradient */
+  NEWTON_STEP,    /* phi where a step of Newton's leads */
+  NEWTON_SLOPE,   /* the gradient there, as the last one served no more */
+  BETWEEN,        /* phi between two points whose signs differ */
+  SEARCH,         /* phi at the next place of the search */
+  SLOPE_AT_FOOT,
+  ARRIVED,
+  LOST
+} wait;
+
+typedef struct way {
+  wait wait;
+  laves__vec3 at; /* the point that is waited for, or about which the gradient is */
+  laves__vec3 point;
+  double reach, phi;     /* of the point */
+  laves__vec3 x, slope;  /* Newton's: where it is, and the gradient that it uses */
+  double phi_x;          /* there */
+  laves__vec3 direction; /* of the search */
+  bool searches;         /* Newton's method has failed */
+  laves__vec3 a, b;      /* the stretch that is halved */
+  double phi_a, phi_b;   /* at its ends, or less, to move the secant */
+  int step;              /* of whichever of these is going on */
+  laves__vec3 foot, normal;
+} way;
+
+static void go_to(way *w, wait what, laves__vec3 at) {
+  w->wait = what;
+  w->at = at;
+}
+
+static bool waits_for_slope(const way *w) {
+  return w->wait == SLOPE_AT_START || w->wait == NEWTON_SLOPE || w->wait == SLOPE_AT_FOOT;
 }
 
 static bool has_slope(laves__vec3 gradient) {
@@ -66,90 +98,284 @@ static bool has_slope(laves__vec3 gradient) {
   return slope2 > 0 && isfinite(slope2);
 }
 
+static void arrive(way *w, laves__vec3 foot) {
+  w->foot = foot;
+  go_to(w, SLOPE_AT_FOOT, foot);
+}
+
+/* Steps of growing length from the point along `direction`, until the sign differs from that of phi. */
+static void search_on(way *w) {
+  if (++w->step > SEARCH_STEPS) {
+    w->wait = LOST;
+    return;
+  }
+  const double t = (double)w->step / SEARCH_STEPS;
+  go_to(w, SEARCH, v3_mad(w->point, w->direction, w->reach * t * t));
+}
+
+static void begin_search(way *w) {
+  w->searches = true;
+  w->step = 0;
+  w->a = w->point;
+  w->phi_a = w->phi;
+  search_on(w);
+}
+
+/* Newton's method has come to x. */
+static void end_newton(way *w, laves__vec3 x) {
+  if (v3_distance(w->point, x) > w->reach)
+    begin_search(w);
+  else
+    arrive(w, x);
+}
+
+static void end_between(way *w, laves__vec3 p) {
+  if (w->searches)
+    arrive(w, p);
+  else
+    end_newton(w, p);
+}
+
 /* A point of the surface between a and b, whose values differ in sign, by the Illinois variant of false position. */
-static laves__vec3 between(const solid *s, laves__vec3 a, double phi_a, laves__vec3 b, double phi_b) {
-  for (int i = 0; i < BISECTION_MAX && v3_distance(a, b) > close_enough * s->diagonal; i++) {
-    const double secant = phi_a / (phi_a - phi_b);
-    /* Every third step halves, for functions on which the secant creeps. */
-    const bool halve = i % 3 == 2 || !(secant > 0 && secant < 1);
-    const laves__vec3 m = v3_lerp(a, b, halve ? 0.5 : secant);
-    const double phi = value(s, m);
-    if (phi == 0) return m;
-    if ((phi < 0) == (phi_b < 0)) {
-      b = m;
-      phi_b = phi;
-      phi_a *= 0.5;
-    } else {
-      a = m;
-      phi_a = phi;
-      phi_b *= 0.5;
-    }
+static void halve(way *w, const solid *s) {
+  if (w->step == BISECTION_MAX || !(v3_distance(w->a, w->b) > close_enough * s->diagonal)) {
+    end_between(w, v3_lerp(w->a, w->b, 0.5));
+    return;
   }
-  return v3_lerp(a, b, 0.5);
+  const double secant = w->phi_a / (w->phi_a - w->phi_b);
+  /* Every third step halves, for functions on which the secant creeps. */
+  const bool middle = w->step % 3 == 2 || !(secant > 0 && secant < 1);
+  go_to(w, BETWEEN, v3_lerp(w->a, w->b, middle ? 0.5 : secant));
 }
 
-/* Steps of growing length from p along `direction`, until the sign differs from that of phi. */
-static bool search(const solid *s, laves__vec3 p, double phi, laves__vec3 direction, double reach, laves__vec3 *foot) {
-  laves__vec3 before = p;
-  double phi_before = phi;
-  for (int i = 1; i <= SEARCH_STEPS; i++) {
-    const double t = (double)i / SEARCH_STEPS;
-    const laves__vec3 q = v3_mad(p, direction, reach * t * t);
-    const double phi_q = value(s, q);
-    if ((phi_q < 0) != (phi < 0)) {
-      *foot = between(s, before, phi_before, q, phi_q);
-      return true;
-    }
-    before = q;
-    phi_before = phi_q;
-  }
-  return false;
+static void begin_between(way *w, const solid *s, laves__vec3 a, double phi_a, laves__vec3 b, double phi_b) {
+  w->a = a;
+  w->b = b;
+  w->phi_a = phi_a;
+  w->phi_b = phi_b;
+  w->step = 0;
+  halve(w, s);
 }
 
-/* Newton's method from p, where the gradient is g; false when it leaves the ball or finds no slope. A gradient serves as long as
- * its steps gain much. */
-static bool newton(const solid *s, laves__vec3 p, double phi, laves__vec3 g, double reach, laves__vec3 *foot) {
-  laves__vec3 x = p;
-  for (int i = 0; i < NEWTON_MAX; i++) {
-    if (!has_slope(g)) return false;
-    const double slope2 = v3_norm2(g);
-    double step = -phi / slope2;
-    const double length = fabs(step) * sqrt(slope2);
-    if (length <= close_enough * s->diagonal) break;
-    if (length > reach) step *= reach / length;
-    const laves__vec3 next = v3_mad(x, g, step);
-    const double phi_next = value(s, next);
-    if (phi_next != 0 && (phi_next < 0) != (phi < 0)) {
-      x = between(s, x, phi, next, phi_next);
+static void went_between(way *w, const solid *s, double phi) {
+  if (phi == 0) {
+    end_between(w, w->at);
+    return;
+  }
+  if ((phi < 0) == (w->phi_b < 0)) {
+    w->b = w->at;
+    w->phi_b = phi;
+    w->phi_a *= 0.5;
+  } else {
+    w->a = w->at;
+    w->phi_a = phi;
+    w->phi_b *= 0.5;
+  }
+  w->step++;
+  halve(w, s);
+}
+
+static void searched(way *w, const solid *s, double phi) {
+  if ((phi < 0) != (w->phi < 0)) {
+    begin_between(w, s, w->a, w->phi_a, w->at, phi);
+    return;
+  }
+  w->a = w->at;
+  w->phi_a = phi;
+  search_on(w);
+}
+
+/* The next step of Newton's method, which gives up where there is no slope and ends where steps are small. */
+static void newton_on(way *w, const solid *s) {
+  if (w->step == NEWTON_MAX) {
+    end_newton(w, w->x);
+    return;
+  }
+  if (!has_slope(w->slope)) {
+    begin_search(w);
+    return;
+  }
+  const double slope2 = v3_norm2(w->slope);
+  double step = -w->phi_x / slope2;
+  const double length = fabs(step) * sqrt(slope2);
+  if (length <= close_enough * s->diagonal) {
+    end_newton(w, w->x);
+    return;
+  }
+  if (length > w->reach) step *= w->reach / length;
+  go_to(w, NEWTON_STEP, v3_mad(w->x, w->slope, step));
+}
+
+/* It fails when it leaves the ball. A gradient serves as long as its steps gain much. */
+static void newton_went(way *w, const solid *s, double phi) {
+  if (phi != 0 && (phi < 0) != (w->phi_x < 0)) {
+    begin_between(w, s, w->x, w->phi_x, w->at, phi);
+    return;
+  }
+  if (v3_distance(w->at, w->point) > 2 * w->reach) {
+    begin_search(w);
+    return;
+  }
+  const bool gained = fabs(phi) < much * fabs(w->phi_x);
+  w->x = w->at;
+  w->phi_x = phi;
+  w->step++;
+  if (phi == 0)
+    end_newton(w, w->x);
+  else if (gained)
+    newton_on(w, s);
+  else
+    go_to(w, NEWTON_SLOPE, w->x);
+}
+
+static void start(way *w, double phi) {
+  w->phi = phi;
+  if (phi == 0)
+    arrive(w, w->point);
+  else
+    go_to(w, SLOPE_AT_START, w->point);
+}
+
+static void begin_newton(way *w, const solid *s, laves__vec3 slope) {
+  if (!has_slope(slope)) {
+    w->wait = LOST;
+    return;
+  }
+  w->x = w->point;
+  w->phi_x = w->phi;
+  w->slope = slope;
+  w->direction = v3_scale(v3_unit(slope), w->phi < 0 ? 1 : -1);
+  newton_on(w, s);
+}
+
+static void end_way(way *w, laves__vec3 slope) {
+  w->normal = v3_unit(slope);
+  w->wait = has_slope(slope) && v3_distance(w->point, w->foot) <= w->reach ? ARRIVED : LOST;
+}
+
+/* Goes on with what was waited for: one value, or six. */
+static void go_on(way *w, const solid *s, const double *phi) {
+  const double per_step = 0.5 / (difference_step * s->diagonal);
+  laves__vec3 slope = {0, 0, 0};
+  if (waits_for_slope(w)) slope = v3_scale(v3(phi[0] - phi[1], phi[2] - phi[3], phi[4] - phi[5]), per_step);
+  switch (w->wait) {
+    case AT_START:
+      start(w, phi[0]);
       break;
-    }
-    if (v3_distance(next, p) > 2 * reach) return false;
-    const bool gained = fabs(phi_next) < much * fabs(phi);
-    x = next;
-    phi = phi_next;
-    if (phi == 0) break;
-    if (!gained) g = gradient(s, x);
+    case SLOPE_AT_START:
+      begin_newton(w, s, slope);
+      break;
+    case NEWTON_STEP:
+      newton_went(w, s, phi[0]);
+      break;
+    case NEWTON_SLOPE:
+      w->slope = slope;
+      newton_on(w, s);
+      break;
+    case BETWEEN:
+      went_between(w, s, phi[0]);
+      break;
+    case SEARCH:
+      searched(w, s, phi[0]);
+      break;
+    case SLOPE_AT_FOOT:
+      end_way(w, slope);
+      break;
+    case ARRIVED:
+    case LOST:
+      break;
   }
-  *foot = x;
-  return true;
+}
+
+static void points_about(const solid *s, laves__vec3 p, laves__vec3 points[SLOPE_POINTS]) {
+  const double h = difference_step * s->diagonal;
+  points[0] = v3(p.x + h, p.y, p.z);
+  points[1] = v3(p.x - h, p.y, p.z);
+  points[2] = v3(p.x, p.y + h, p.z);
+  points[3] = v3(p.x, p.y - h, p.z);
+  points[4] = v3(p.x, p.y, p.z + h);
+  points[5] = v3(p.x, p.y, p.z - h);
+}
+
+static bool has_ended(const way *w) { return w->wait == ARRIVED || w->wait == LOST; }
+
+/* Writes the points that a way waits for; returns how many. */
+static size_t points_of(const way *w, const solid *s, laves__vec3 *points) {
+  if (has_ended(w)) return 0;
+  if (waits_for_slope(w)) {
+    points_about(s, w->at, points);
+    return SLOPE_POINTS;
+  }
+  points[0] = w->at;
+  return 1;
+}
+
+/* All ways to their ends. points, phi: room for SLOPE_POINTS of each. */
+static void walk(const solid *s, size_t count, way *ways, laves__vec3 *points, double *phi) {
+  for (;;) {
+    size_t asked = 0;
+    for (size_t i = 0; i < count; i++) asked += points_of(&ways[i], s, points + asked);
+    if (asked == 0) return;
+    evaluate(s, asked, points, phi, NULL);
+    const double *answer = phi;
+    for (size_t i = 0; i < count; i++) {
+      if (has_ended(&ways[i])) continue;
+      const size_t given = waits_for_slope(&ways[i]) ? SLOPE_POINTS : 1;
+      go_on(&ways[i], s, answer);
+      answer += given;
+    }
+  }
+}
+
+/* Whether the gradient is likely to be wanted at the next point. After a step of Newton's that went a little too far, the first
+ * secant mostly ends on the surface. */
+static bool may_end_at(const way *w) {
+  return w->wait == AT_START || w->wait == NEWTON_STEP || (w->wait == BETWEEN && !w->searches && w->step == 0);
+}
+
+/* One way to its end. */
+static void walk_alone(const solid *s, way *w) {
+  laves__vec3 points[1 + SLOPE_POINTS];
+  double phi[1 + SLOPE_POINTS];
+  while (!has_ended(w)) {
+    size_t asked = points_of(w, s, points);
+    const bool ahead = may_end_at(w);
+    const laves__vec3 at = w->at;
+    if (ahead) {
+      points_about(s, at, points + 1);
+      asked += SLOPE_POINTS;
+    }
+    evaluate(s, asked, points, phi, NULL);
+    go_on(w, s, phi);
+    if (ahead && waits_for_slope(w) && v3_distance(w->at, at) == 0) go_on(w, s, phi + 1);
+  }
+}
+
+static way way_from(laves__vec3 point, double reach) {
+  return (way){.wait = AT_START, .at = point, .point = point, .reach = reach};
 }
 
 static bool project(const void *self, laves__vec3 point, double reach, uint32_t *hint, laves__vec3 *foot, laves__vec3 *normal) {
-  const solid *s = self;
+  way w = way_from(point, reach);
+  walk_alone(self, &w);
   *hint = LAVES__NO_HINT;
-  const double phi = value(s, point);
-  if (phi == 0) {
-    *foot = point;
-  } else {
-    const laves__vec3 g = gradient(s, point);
-    if (!has_slope(g)) return false;
-    if ((!newton(s, point, phi, g, reach, foot) || v3_distance(point, *foot) > reach) &&
-        !search(s, point, phi, v3_scale(v3_unit(g), phi < 0 ? 1 : -1), reach, foot))
-      return false;
+  *foot = w.foot;
+  *normal = w.normal;
+  return w.wait == ARRIVED;
+}
+
+static void project_many(const void *self, size_t count, const laves__vec3 *points, double reach, laves__projection *answers) {
+  way ways[WAYS];
+  laves__vec3 asked[WAYS * SLOPE_POINTS];
+  double phi[WAYS * SLOPE_POINTS];
+  for (size_t begin = 0; begin < count; begin += WAYS) {
+    const size_t n = count - begin < WAYS ? count - begin : WAYS;
+    for (size_t i = 0; i < n; i++) ways[i] = way_from(points[begin + i], reach);
+    walk(self, n, ways, asked, phi);
+    for (size_t i = 0; i < n; i++)
+      answers[begin + i] = (laves__projection){
+          .found = ways[i].wait == ARRIVED, .hint = LAVES__NO_HINT, .foot = ways[i].foot, .normal = ways[i].normal};
   }
-  const laves__vec3 slope = gradient(s, *foot);
-  *normal = v3_unit(slope);
-  return has_slope(slope) && v3_distance(point, *foot) <= reach;
 }
 
 static bool apart(laves__box3 b, laves__vec3 c, laves__vec3 h) {
@@ -198,6 +424,8 @@ laves_result laves__function_build(laves_context *context, const laves_function 
                                    .area = NAN,
                                    .evaluate = evaluate,
                                    .project = project,
+                                   .project_many = project_many,
+                                   .batch = BATCH,
                                    .side = side,
                                    .free = solid_free};
   domain->info.kind = LAVES_DOMAIN_FUNCTION;

@@ -45,6 +45,10 @@ typedef struct laves__oracle {
   /* The same for many points, with the same answers; NULL: they are projected one by one. */
   void (*project_many)(const void *self, size_t count, const laves__vec3 *points, double reach, laves__projection *answers);
 
+  /* As many points as a call of these two had best have where more can be asked at once, since a call has a price of its own
+   * (a callback); 0: it is all the same, and points that are near one another do better. */
+  size_t batch;
+
   /* Which side the whole ball (centre, radius) and the whole box (centre +- half) lie on; either may be used, both contain
    * the region that the caller means. UNDECIDED is always a correct answer; the others are certain. */
   laves__side (*side)(const void *self, laves__vec3 centre, double radius, laves__vec3 half);

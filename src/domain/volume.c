@@ -31,16 +31,18 @@ typedef struct sampling {
   size_t next; /* of the sequence */
 } sampling;
 
-/* The share of a box that is inside, by samples. */
-static double sampled_share(sampling *s, const laves__box3 *box) {
+/* The shares of up to eight boxes that are inside, by samples. */
+static void sampled_shares(sampling *s, int count, const laves__box3 *boxes, double *shares) {
   const laves__oracle *oracle = s->oracle;
-  laves__vec3 points[LEAF_SAMPLES];
-  double phi[LEAF_SAMPLES];
-  int inside = 0;
-  for (int i = 0; i < LEAF_SAMPLES; i++) points[i] = r3_point(box, s->next++);
-  oracle->evaluate(oracle->self, LEAF_SAMPLES, points, phi, NULL);
-  for (int i = 0; i < LEAF_SAMPLES; i++) inside += phi[i] < 0;
-  return (double)inside / LEAF_SAMPLES;
+  laves__vec3 points[8 * LEAF_SAMPLES];
+  double phi[8 * LEAF_SAMPLES];
+  for (int i = 0; i < count * LEAF_SAMPLES; i++) points[i] = r3_point(&boxes[i / LEAF_SAMPLES], s->next++);
+  oracle->evaluate(oracle->self, (size_t)(count * LEAF_SAMPLES), points, phi, NULL);
+  for (int k = 0; k < count; k++) {
+    int inside = 0;
+    for (int i = 0; i < LEAF_SAMPLES; i++) inside += phi[k * LEAF_SAMPLES + i] < 0;
+    shares[k] = (double)inside / LEAF_SAMPLES;
+  }
 }
 
 /* The share of a box that is inside, from the distance of its centre: as if the box were the ball of its volume and the
@@ -53,28 +55,60 @@ static double balanced_share(const laves__oracle *oracle, laves__vec3 centre, do
   return (2 + 3 * t - t * t * t) / 4;
 }
 
-/* After a cancel what is left counts as nothing; the caller asks whether there was one. */
-static double box_volume(sampling *s, laves__box3 box, int level) {
-  const laves__oracle *oracle = s->oracle;
-  if (laves__cancelled(s->context, "background", 0)) return 0;
-  const laves__vec3 half = v3_scale(v3_sub(box.upper, box.lower), 0.5), centre = box3_centre(box);
-  const double volume = 8 * half.x * half.y * half.z;
-  switch (oracle->side(oracle->self, centre, v3_norm(half), half)) {
-    case LAVES__OUTSIDE:
-      return 0;
-    case LAVES__INSIDE:
-      return volume;
-    case LAVES__UNDECIDED:
-      break;
-  }
-  if (level == (oracle->is_distance ? DISTANCE_LEVELS : LEVELS))
-    return volume * (oracle->is_distance ? balanced_share(oracle, centre, volume) : sampled_share(s, &box));
-  double sum = 0;
+static laves__vec3 half_of(const laves__box3 *box) { return v3_scale(v3_sub(box->upper, box->lower), 0.5); }
+
+static double volume_of(const laves__box3 *box) {
+  const laves__vec3 half = half_of(box);
+  return 8 * half.x * half.y * half.z;
+}
+
+static laves__side side_of(const laves__oracle *oracle, const laves__box3 *box) {
+  const laves__vec3 half = half_of(box);
+  return oracle->side(oracle->self, box3_centre(*box), v3_norm(half), half);
+}
+
+static void split(const laves__box3 *box, laves__box3 children[8]) {
+  const laves__vec3 half = half_of(box), centre = box3_centre(*box);
   for (int child = 0; child < 8; child++) {
     const laves__vec3 lower =
-        v3(child & 1 ? centre.x : box.lower.x, child & 2 ? centre.y : box.lower.y, child & 4 ? centre.z : box.lower.z);
-    sum += box_volume(s, (laves__box3){lower, v3_add(lower, half)}, level + 1);
+        v3(child & 1 ? centre.x : box->lower.x, child & 2 ? centre.y : box->lower.y, child & 4 ? centre.z : box->lower.z);
+    children[child] = (laves__box3){lower, v3_add(lower, half)};
   }
+}
+
+/* The volume within the smallest boxes; those that are sampled are asked for together. */
+static double leaves_volume(sampling *s, const laves__box3 children[8]) {
+  laves__box3 open[8];
+  laves__side side[8];
+  double shares[8], sum = 0;
+  int count = 0;
+  for (int child = 0; child < 8; child++) {
+    side[child] = side_of(s->oracle, &children[child]);
+    if (side[child] == LAVES__UNDECIDED) open[count++] = children[child];
+  }
+  if (count > 0 && !s->oracle->is_distance) sampled_shares(s, count, open, shares);
+  count = 0;
+  for (int child = 0; child < 8; child++) {
+    if (side[child] == LAVES__OUTSIDE) continue;
+    const double volume = volume_of(&children[child]);
+    double share = 1;
+    if (side[child] == LAVES__UNDECIDED)
+      share = s->oracle->is_distance ? balanced_share(s->oracle, box3_centre(children[child]), volume) : shares[count++];
+    sum += volume * share;
+  }
+  return sum;
+}
+
+/* After a cancel what is left counts as nothing; the caller asks whether there was one. */
+static double box_volume(sampling *s, laves__box3 box, int level) {
+  if (laves__cancelled(s->context, "background", 0)) return 0;
+  const laves__side side = side_of(s->oracle, &box);
+  if (side != LAVES__UNDECIDED) return side == LAVES__INSIDE ? volume_of(&box) : 0;
+  laves__box3 children[8];
+  split(&box, children);
+  if (level + 1 == (s->oracle->is_distance ? DISTANCE_LEVELS : LEVELS)) return leaves_volume(s, children);
+  double sum = 0;
+  for (int child = 0; child < 8; child++) sum += box_volume(s, children[child], level + 1);
   return sum;
 }
 

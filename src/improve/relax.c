@@ -32,32 +32,76 @@ static bool draws(const sweep *s, int32_t v, int32_t w) {
   return v3_dot(layer->normal[v], layer->normal[w]) > 0; /* else the other side of a thin wall */
 }
 
+/* Where a vertex shall go before it is brought back on to the surface; false: nothing draws it. */
+static bool find_aim(const sweep *s, int32_t v, laves__vec3 *aim) {
+  const laves__layer *layer = s->layer;
+  const laves__star *star = &layer->star[v];
+  laves__vec3 sum = {0, 0, 0};
+  int count = 0;
+  for (int i = 0; i < star->count; i++)
+    for (int k = 0; k < 4; k++) {
+      const int32_t w = layer->tet[star->tet[i]][k];
+      if (w == v || layer->depth[w] != 0 || !draws(s, v, w)) continue;
+      sum = v3_add(sum, layer->position[w]);
+      count++;
+    }
+  if (count == 0) return false;
+  *aim = v3_lerp(layer->position[v], v3_scale(sum, 1.0 / count), share);
+  return true;
+}
+
+/* Vertices of one reach whose feet are asked for together, where the oracle likes large calls. */
+enum { ASKED_MAX = 256 };
+
+typedef struct question {
+  size_t count;
+  double reach;
+  size_t vertex[ASKED_MAX];
+  laves__vec3 aim[ASKED_MAX];
+} question;
+
+static void find_asked_places(const sweep *s, question *q) {
+  laves__projection answer[ASKED_MAX];
+  for (size_t i = 0; i < q->count; i++) answer[i].hint = s->layer->hint[q->vertex[i]];
+  laves__frame_project_many(s->frame, q->count, q->aim, q->reach, answer);
+  for (size_t i = 0; i < q->count; i++) {
+    const laves__projection *a = &answer[i];
+    const bool moved = a->found && v3_distance(a->foot, q->aim[i]) <= q->reach;
+    s->other[q->vertex[i]] = (place){a->foot, a->normal, a->hint, moved};
+  }
+  q->count = 0;
+}
+
+static void ask(const sweep *s, size_t v, laves__vec3 aim, double reach, question *q) {
+  if (q->count == ASKED_MAX || (q->count > 0 && reach != q->reach)) find_asked_places(s, q);
+  q->reach = reach;
+  q->vertex[q->count] = v;
+  q->aim[q->count++] = aim;
+}
+
 static void find_places(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const sweep *s = user;
   const laves__layer *layer = s->layer;
+  const bool together = s->frame->oracle->batch > 0;
+  question q;
+  q.count = 0;
   for (size_t v = begin; v < end; v++) {
     place *p = &s->other[v];
     p->moved = false;
     const laves__hold hold = laves__layer_hold(layer, (int32_t)v);
-    if (layer->depth[v] != 0 || layer->off_surface[v] || hold.kind == LAVES__HOLD_CORNER) continue;
-    const laves__star *star = &layer->star[v];
-    laves__vec3 sum = {0, 0, 0};
-    int count = 0;
-    for (int i = 0; i < star->count; i++)
-      for (int k = 0; k < 4; k++) {
-        const int32_t w = layer->tet[star->tet[i]][k];
-        if (w == (int32_t)v || layer->depth[w] != 0 || !draws(s, (int32_t)v, w)) continue;
-        sum = v3_add(sum, layer->position[w]);
-        count++;
-      }
-    if (count == 0) continue;
-    const laves__vec3 aim = v3_lerp(layer->position[v], v3_scale(sum, 1.0 / count), share);
+    laves__vec3 aim;
+    if (layer->depth[v] != 0 || layer->off_surface[v] || hold.kind == LAVES__HOLD_CORNER || !find_aim(s, (int32_t)v, &aim))
+      continue;
     p->hint = layer->hint[v];
     const double reach = surface_reach * laves__layer_scale(layer, (int32_t)v);
-    p->moved = laves__frame_project_held(s->frame, hold, aim, reach, &p->hint, &p->position, &p->normal) &&
-               v3_distance(p->position, aim) <= reach;
+    if (together && hold.kind == LAVES__HOLD_SURFACE)
+      ask(s, v, aim, reach, &q);
+    else
+      p->moved = laves__frame_project_held(s->frame, hold, aim, reach, &p->hint, &p->position, &p->normal) &&
+                 v3_distance(p->position, aim) <= reach;
   }
+  if (q.count > 0) find_asked_places(s, &q);
 }
 
 static void exchange(laves__layer *layer, place *p, size_t v) {

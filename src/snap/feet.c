@@ -59,38 +59,55 @@ static bool nearest_crossing(const laves__frame *frame, const laves__lattice *la
   return true;
 }
 
-/* The feet of some sites of a record: the nearest points of the surface or, where one can't be found, the nearest crossing of
- * the site's own edges. */
-static void find_record_feet(const laves__frame *frame, const laves__lattice *lattice, size_t record, uint32_t sites,
-                             laves__foot *feet) {
-  const laves__record *r = &lattice->record[record];
-  double reach[LAVES__C15_SITES], furthest = 0;
-  laves__vec3 at[LAVES__C15_SITES] = {{0, 0, 0}};
-  laves__projection answer[LAVES__C15_SITES];
-  size_t count = 0;
-  for (uint32_t mask = sites; mask; mask &= mask - 1) {
-    const int site = __builtin_ctz(mask);
-    const laves__site s = {(int32_t)record, (uint8_t)site};
-    at[count] = laves__site_place(lattice, s);
-    reach[count] = foot_reach * laves__site_scale(lattice, s);
-    furthest = fmax(furthest, reach[count]);
-    answer[count++].hint = r->hint[site];
-  }
-  laves__frame_project_many(frame, count, at, furthest, answer);
-  count = 0;
-  for (uint32_t mask = sites; mask; mask &= mask - 1, count++) {
-    const int site = __builtin_ctz(mask);
-    const laves__projection *a = &answer[count];
-    laves__foot *foot = &feet[site];
-    if (a->found && v3_distance(at[count], a->foot) <= reach[count]) {
+/* Sites whose feet are asked for in one call: those of one record, or of several for oracles that like large calls. */
+enum { ASKED_MAX = 256 };
+
+typedef struct question {
+  size_t count;
+  double furthest; /* the largest reach of the record that they are of, or of each of the records */
+  laves__site site[ASKED_MAX];
+  laves__vec3 at[ASKED_MAX];
+  double reach[ASKED_MAX];
+  laves__projection answer[ASKED_MAX];
+} question;
+
+/* The feet of the sites: the nearest points of the surface or, where one can't be found, the nearest crossing of the site's own
+ * edges. */
+static void find_asked_feet(const laves__frame *frame, const laves__lattice *lattice, question *q, laves__feet *feet) {
+  laves__frame_project_many(frame, q->count, q->at, q->furthest, q->answer);
+  for (size_t i = 0; i < q->count; i++) {
+    const laves__projection *a = &q->answer[i];
+    const laves__site s = q->site[i];
+    laves__foot *foot = &feet->block[feet->block_of[s.cell]][s.site];
+    if (a->found && v3_distance(q->at[i], a->foot) <= q->reach[i]) {
       foot->position = a->foot;
       foot->hint = a->hint;
       set_normal(foot, a->normal);
       foot->state = LAVES__FOOT_FOUND;
     } else {
-      const laves__site s = {(int32_t)record, (uint8_t)site};
       foot->state = nearest_crossing(frame, lattice, s, foot) ? LAVES__FOOT_FOUND : LAVES__FOOT_NONE;
     }
+  }
+  q->count = 0;
+}
+
+static double furthest_reach(const laves__lattice *lattice, size_t record, uint32_t sites) {
+  double furthest = 0;
+  for (uint32_t mask = sites; mask; mask &= mask - 1) {
+    const laves__site s = {(int32_t)record, (uint8_t)__builtin_ctz(mask)};
+    furthest = fmax(furthest, foot_reach * laves__site_scale(lattice, s));
+  }
+  return furthest;
+}
+
+static void ask(const laves__lattice *lattice, size_t record, uint32_t sites, question *q) {
+  for (uint32_t mask = sites; mask; mask &= mask - 1) {
+    const laves__site s = {(int32_t)record, (uint8_t)__builtin_ctz(mask)};
+    const size_t i = q->count++;
+    q->site[i] = s;
+    q->at[i] = laves__site_place(lattice, s);
+    q->reach[i] = foot_reach * laves__site_scale(lattice, s);
+    q->answer[i].hint = lattice->record[record].hint[s.site];
   }
 }
 
@@ -136,12 +153,22 @@ typedef struct search {
 static void find_feet(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const search *s = user;
+  const size_t wished = s->frame->oracle->batch, most = wished < ASKED_MAX ? wished : ASKED_MAX;
+  question q;
+  q.count = 0;
   for (size_t i = begin; i < end; i++) {
     uint32_t unknown = 0;
     for (uint32_t mask = s->wanted[i]; mask; mask &= mask - 1)
       if (laves__feet_at(s->feet, i, __builtin_ctz(mask))->state == LAVES__FOOT_UNKNOWN) unknown |= mask & -mask;
-    if (unknown) find_record_feet(s->frame, s->lattice, i, unknown, s->feet->block[s->feet->block_of[i]]);
+    if (!unknown) continue;
+    /* What is found depends on the reach, so no record is asked for with another's. */
+    const double reach = furthest_reach(s->lattice, i, unknown);
+    const bool full = q.count + LAVES__C15_SITES > most || reach != q.furthest;
+    if (q.count > 0 && full) find_asked_feet(s->frame, s->lattice, &q, s->feet);
+    q.furthest = reach;
+    ask(s->lattice, i, unknown, &q);
   }
+  if (q.count > 0) find_asked_feet(s->frame, s->lattice, &q, s->feet);
 }
 
 bool laves__feet_make(const laves__lattice *lattice, const uint32_t *wanted, laves__feet *feet) {

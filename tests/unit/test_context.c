@@ -146,12 +146,45 @@ static void foreign_options_are_refused(void **state) {
   assert_null(laves_context_create(&options));
 }
 
+static bool count_reports(void *user, const char *phase, double fraction) {
+  (void)phase;
+  (void)fraction;
+  return ++*(int *)user < 5;
+}
+
+/* With an hour between calls, the callback hears of each new phase, and again after a reset; without, of every turn. */
+static void progress_keeps_its_interval(void **state) {
+  (void)state;
+  for (int hours = 0; hours < 2; hours++) {
+    int reports = 0;
+    laves_context_options options = laves_context_options_default();
+    options.progress = count_reports;
+    options.progress_user = &reports;
+    options.progress_interval = 3600 * hours;
+    laves_context *context = laves_context_create(&options);
+    static const char one[] = "one", two[] = "two";
+    assert_false(laves__cancelled(context, one, 0));
+    assert_false(laves__cancelled(context, one, 0.5));
+    assert_int_equal(reports, hours ? 1 : 2);
+    assert_false(laves__cancelled(context, two, 0));
+    laves__progress_reset(context);
+    assert_false(laves__cancelled(context, two, 0.5));
+    assert_int_equal(reports, hours ? 3 : 4);
+    laves__progress_reset(context);
+    reports = 4;
+    assert_true(laves__cancelled(context, two, 0.6));
+    assert_true(laves__cancelled(context, two, 0.7)); /* it stays so, without a call */
+    assert_int_equal(reports, 5);
+    laves_context_free(context);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bytes_and_peak_are_counted),      cmocka_unit_test(limit_refuses_and_leaves_the_count),
       cmocka_unit_test(sizes_that_overflow_are_refused), cmocka_unit_test(empty_blocks_are_blocks),
       cmocka_unit_test(growing_keeps_contents),          cmocka_unit_test(hook_sees_true_sizes_and_its_failures_are_passed_on),
-      cmocka_unit_test(foreign_options_are_refused),
+      cmocka_unit_test(foreign_options_are_refused),     cmocka_unit_test(progress_keeps_its_interval),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

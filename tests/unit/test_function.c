@@ -55,6 +55,57 @@ static void projects_onto_the_zero_set(void **unused) {
   laves_context_free(context);
 }
 
+/* Counts what it is asked. */
+typedef struct counted {
+  double radius;
+  size_t calls, points;
+} counted;
+
+static void counted_ball(void *user, const double *points, size_t count, double *values) {
+  counted *c = user;
+  steep_ball(&c->radius, points, count, values);
+  c->calls++;
+  c->points += count;
+}
+
+/* Points go their ways in step, and each comes to where it comes alone, to the last bit; the callback is called far more seldom.
+ */
+static void many_go_as_one_does(void **unused) {
+  (void)unused;
+  enum { COUNT = 700 };
+  laves_context *context = laves_context_create(NULL);
+  counted c = {.radius = 1};
+  laves_domain *domain = build(context, counted_ball, &c.radius, 0);
+  const laves__oracle *o = &domain->oracle;
+  static laves__vec3 points[COUNT];
+  static laves__projection answers[COUNT];
+  for (int i = 0; i < COUNT;
+       i++) { /* from within, from without, from the centre, where there is no slope, and from where it is NAN */
+    const double t = 0.7 * i, r = i == 0 ? 0 : 0.7 + 0.001 * i, z = cos(0.3 * i);
+    points[i] = v3(r * sqrt(1 - z * z) * cos(t), r * sqrt(1 - z * z) * sin(t), r * z);
+    answers[i].hint = LAVES__NO_HINT;
+  }
+  c.calls = c.points = 0;
+  laves__project_many(o, COUNT, points, 0.25, answers);
+  const size_t calls = c.calls;
+  assert_true(c.points / c.calls > 20);
+  size_t found = 0;
+  for (int i = 0; i < COUNT; i++) {
+    laves__vec3 foot, normal;
+    uint32_t hint = LAVES__NO_HINT;
+    const bool alone = o->project(o->self, points[i], 0.25, &hint, &foot, &normal);
+    assert_int_equal(answers[i].found, alone);
+    if (!alone) continue;
+    assert_memory_equal(&answers[i].foot, &foot, sizeof foot);
+    assert_memory_equal(&answers[i].normal, &normal, sizeof normal);
+    found++;
+  }
+  assert_true(found > COUNT / 4 && found < COUNT);
+  assert_true(c.calls - calls > 5 * calls);
+  laves_domain_free(domain);
+  laves_context_free(context);
+}
+
 static void reach_is_kept(void **unused) {
   (void)unused;
   laves_context *context = laves_context_create(NULL);
@@ -122,8 +173,11 @@ static void bad_descriptions_are_refused(void **unused) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(projects_onto_the_zero_set),          cmocka_unit_test(reach_is_kept),
-      cmocka_unit_test(sides_follow_the_lipschitz_constant), cmocka_unit_test(what_is_no_number_is_outside),
+      cmocka_unit_test(projects_onto_the_zero_set),
+      cmocka_unit_test(many_go_as_one_does),
+      cmocka_unit_test(reach_is_kept),
+      cmocka_unit_test(sides_follow_the_lipschitz_constant),
+      cmocka_unit_test(what_is_no_number_is_outside),
       cmocka_unit_test(bad_descriptions_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
