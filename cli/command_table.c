@@ -40,11 +40,13 @@ const command commands[] = {
      "laves tiling\n"
      "laves tiling --cells 8,8,2 --size 0.1 -o box.vtu\n",
      TILING, command_tiling},
-    {"view", "MESH", "draw a mesh, whole or cut open, into a PNG file",
+    {"view", "MESH", "draw a mesh, whole or cut open, or histograms of its quality",
      "MESH is what `laves check` takes. With --cut, whole tetrahedra on one side of a plane are left out, never halves, so the\n"
-     "picture shows the elements of the inside; their faces have a colour of their own.",
+     "picture shows the elements of the inside; their faces have a colour of their own. Pictures are PNG files, plots SVG.",
      "laves view bunny.vtu -o bunny.png --up y\n"
-     "laves view bunny.vtu -o inside.png --cut x --color dihedral --size 1600x1200\n",
+     "laves view bunny.vtu -o inside.png --cut x --color dihedral --size 1600x1200\n"
+     "laves view bunny.vtu -o worst.png --worst 10\n"
+     "laves view bunny.vtu -o angles.svg --plot dihedral\n",
      VIEW, command_view},
 };
 const size_t command_count = sizeof commands / sizeof commands[0];
@@ -166,16 +168,27 @@ const option option_rows[] = {
     {"volume-length", 0, MESH, IN_SHAPE, OPTION_REAL, "Q", NULL, false, 0, 0.8, "0.6", MEMBER(volume_length), 0,
      "asked volume-length ratio of every tetrahedron; exit code 3 when it is missed"},
     {"cut", 0, VIEW, IN_PICTURE, OPTION_WORD, "x|y|z|A,B,C,D", NULL, false, 0, 0, NULL, MEMBER(cut), 0,
-     "leave out what lies in front of a plane: x, y or z through the middle, or a,b,c,d for what has a corner with "
-     "a x + b y + c z > d"},
-    {"color", 0, VIEW, IN_PICTURE, OPTION_WORD, "class|dihedral|quality|size", NULL, false, 0, 0, "class", MEMBER(color), 0,
+     "leave out what lies in front of a plane: x, y or z through the middle, or A,B,C,D for what has a corner with "
+     "A x + B y + C z > D"},
+    {"color", 0, VIEW, IN_PICTURE, OPTION_WORD, "class|dihedral|quality|size|distance", NULL, false, 0, 0, "class", MEMBER(color),
+     0,
      "class: surface and inside; dihedral or quality: from blue (as the tiling's) through amber to red (flat), by the dihedral "
      "angle furthest from the tiling's or by the volume-length ratio; size: from purple (the shortest edges of the mesh) through "
-     "green to yellow (the longest)"},
+     "green to yellow (the longest); distance: the boundary, from blue to red where it is furthest from --surface"},
+    {"surface", 0, VIEW, IN_PICTURE, OPTION_WORD, "INPUT", NULL, false, 0, 0, NULL, MEMBER(surface), 0,
+     "with --color distance: the solid that the mesh should fill, as `laves mesh` takes it; distances to solids that are no "
+     "surface "
+     "files are of first order"},
+    {"worst", 0, VIEW, IN_PICTURE, OPTION_COUNT, "N", "tetrahedra", false, 0, 1000, "0", MEMBER(worst), 0,
+     "draw the worst tetrahedra over the paled mesh, each in a ring, and list them: by volume-length ratio with --color quality, "
+     "else "
+     "by dihedral angle"},
+    {"plot", 0, VIEW, IN_PICTURE, OPTION_WORD, "dihedral|radius-ratio|radius-edge|all", NULL, false, 0, 0, NULL, MEMBER(plot), 0,
+     "no picture but a histogram (SVG) of all dihedral angles, of 3 r / R, or of R / shortest edge; all: the three side by side"},
     {"view", 0, VIEW, IN_PICTURE, OPTION_WORD, "AZ,EL", "degrees", false, 0, 0, "30,25", MEMBER(view), 0,
      "where the viewer stands: around the upward axis, and above the horizon"},
     {"up", 0, VIEW, IN_PICTURE, OPTION_WORD, "x|y|z", NULL, false, 0, 0, "z", MEMBER(up), 0, "upward axis"},
-    {"size", 0, VIEW, IN_PICTURE, OPTION_WORD, "WxH", "pixels", false, 0, 0, "1200x900", MEMBER(pixels), 0,
+    {"size", 0, VIEW, IN_PICTURE, OPTION_WORD, "WxH", "pixels", false, 0, 0, "1200x900; plots 480x320", MEMBER(pixels), 0,
      "width and height, 16 to 16384 each"},
     {"background", 0, VIEW, IN_PICTURE, OPTION_WORD, "white|transparent|dark", NULL, false, 0, 0, "white", MEMBER(background), 0,
      "what is behind the mesh"},
@@ -189,7 +202,7 @@ const option option_rows[] = {
     {"output", 'o', TILING, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, OUTPUT_CAPACITY, NULL, MEMBER(outputs), 0,
      "write the tiling as a mesh; repeat it for several formats"},
     {"output", 'o', VIEW, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, OUTPUT_CAPACITY, NULL, MEMBER(outputs), 0,
-     "where the picture goes (PNG); needed"},
+     "where the picture goes (PNG; with --plot SVG); needed"},
     {"format", 0, MESH | TILING, IN_FILES, OPTION_FORMAT, "NAME", NULL, false, 0, 0, "from the extension", MEMBER(format), 0,
      "format of the one output: "},
     {"ascii", 0, MESH | TILING, IN_FILES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(ascii), 0,

@@ -63,6 +63,8 @@ typedef struct settings {
   const char *cut; /* NULL: not given */
   const char *color, *view, *up, *pixels, *background;
   double lines, creases; /* pixels */
+  const char *plot;      /* NULL: a picture */
+  int64_t worst;
 } settings;
 
 typedef enum option_kind {
