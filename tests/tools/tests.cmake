@@ -17,6 +17,10 @@ add_test(NAME tools/check_docs COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DI
 if(TARGET laves-program)
   add_test(NAME tools/help_files COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/tools/help_files.py $<TARGET_FILE:laves-program>)
 endif()
+if(TARGET laves-program)
+  add_test(NAME tools/paper COMMAND ${PROJECT_SOURCE_DIR}/bench/paper/run $<TARGET_FILE:laves-program> --quick --models ""
+           -o ${CMAKE_CURRENT_BINARY_DIR}/paper)
+endif()
 get_property(tests DIRECTORY PROPERTY TESTS)
 foreach(test ${tests})
   if(test MATCHES "^tools/")
