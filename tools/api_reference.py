@@ -168,7 +168,7 @@ def main():
     elif not PAGE.exists() or PAGE.read_text() != text:
         sys.exit(f"{PAGE.relative_to(ROOT)} is not what include/laves/laves.h says: tools/api_reference.py --write")
     if bare:
-        print("told by their declaration alone:", ", ".join(bare))
+        sys.exit("laves.h says nothing about " + ", ".join(bare))
 
 
 main()

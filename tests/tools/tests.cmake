@@ -20,7 +20,7 @@ set_tests_properties(tools/site PROPERTIES SKIP_RETURN_CODE 77)
 if(TARGET laves-program)
   add_test(NAME tools/help_files COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/tools/help_files.py $<TARGET_FILE:laves-program>)
 endif()
-if(TARGET laves-program)
+if(TARGET laves-program AND NOT LAVES_SANITIZE)
   add_test(NAME tools/paper COMMAND ${PROJECT_SOURCE_DIR}/bench/paper/run $<TARGET_FILE:laves-program> --quick --models ""
            -o ${CMAKE_CURRENT_BINARY_DIR}/paper)
 endif()
