@@ -4,8 +4,9 @@
 #   make demo       meshes the bundled inputs in demo/ and draws them, into build/demo/
 #   make check      builds and runs all tests
 #   make bench      measures quality and speed, and draws README's table
+#   make docs       the documentation as a site, at build/site
 #   make install    installs program, library, header and package files under PREFIX (/usr/local)
-#   make format     lays out the C sources by .clang-format and lists them in src/README.md
+#   make format     lays out the C sources by .clang-format, lists them in src/README.md, and renews docs/api.md
 #   make clean      removes build/
 #   make help       prints this
 
@@ -35,12 +36,17 @@ bench: all
 	@cmake --build $(BUILD) --parallel $(JOBS) --target laves-measure laves-judge laves-floor laves-bumps
 	@bench/run $(BUILD)/laves --readme
 
+docs:
+	@tools/setup docs
+	@tools/make_site $(BUILD)/site
+
 install: all
 	@cmake --install $(BUILD) --prefix $(PREFIX)
 
 format:
 	@git ls-files '*.c' '*.h' ':!src/background/c15_table.c' | xargs clang-format -i
 	@tools/source_list.py --write
+	@tools/api_reference.py --write
 
 clean:
 	@rm -rf $(BUILD)
@@ -48,4 +54,4 @@ clean:
 help:
 	@sed -n '3,/^$$/s/^# \{0,1\}//p' Makefile
 
-.PHONY: all demo check bench install format clean help
+.PHONY: all demo check bench docs install format clean help

@@ -2,6 +2,7 @@
 
 import json
 import os
+import platform
 import re
 import resource
 import subprocess
@@ -75,3 +76,15 @@ def table(header, rows):
     align = ["---" if i == 0 else "---:" for i in range(len(header))]
     lines = ["| " + " | ".join(cells) + " |" for cells in [header, *rows]]
     return "\n".join([lines[0], "|" + "|".join(align) + "|", *lines[1:]])
+
+
+def machine():
+    """Processor, cores, memory, system and compiler in one line each."""
+    cpu, memory = platform.processor() or platform.machine(), ""
+    try:
+        with open("/proc/cpuinfo") as file:
+            cpu = next((line.split(":", 1)[1].strip() for line in file if line.startswith("model name")), cpu)
+        memory = f"{os.sysconf('SC_PAGE_SIZE') * os.sysconf('SC_PHYS_PAGES') / 2**30:.0f} GiB"
+    except (OSError, ValueError):
+        pass
+    return f"{cpu}, {os.cpu_count()} cores, {memory}, {platform.system()}"

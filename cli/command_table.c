@@ -49,11 +49,13 @@ const command commands[] = {
      "laves tiling\n"
      "laves tiling --cells 8,8,2 --size 0.1 -o box.vtu\n",
      TILING, command_tiling},
-    {"view", "MESH", "draw a mesh, whole or cut open, into a PNG file",
+    {"view", "MESH", "draw a mesh, whole or cut open, or histograms of its quality",
      "MESH is what `laves check` takes. With --cut, whole tetrahedra on one side of a plane are left out, never halves, so the\n"
-     "picture shows the elements of the inside; their faces have a colour of their own.",
+     "picture shows the elements of the inside; their faces have a colour of their own. Pictures are PNG files, plots SVG.",
      "laves view bunny.vtu -o bunny.png --up y\n"
-     "laves view bunny.vtu -o inside.png --cut x --color dihedral --size 1600x1200\n",
+     "laves view bunny.vtu -o inside.png --cut x --color dihedral --size 1600x1200\n"
+     "laves view bunny.vtu -o worst.png --worst 10\n"
+     "laves view bunny.vtu -o angles.svg --plot dihedral\n",
      VIEW, command_view},
 };
 const size_t command_count = sizeof commands / sizeof commands[0];
@@ -145,7 +147,8 @@ const option option_rows[] = {
     {"grading", 0, MESH | INFO, IN_SIZING, OPTION_REAL, "G", "size per distance", false, 0.05, 1, "0.3", MEMBER(grading), 0,
      "how fast the size may grow from place to place"},
 
-    {"features", 0, MESH | INFO, IN_FEATURES, OPTION_WORDS, "WHAT", NULL, false, 0, TEXTS_CAPACITY, "auto", MEMBER(features), 0,
+    {"features", 0, MESH | INFO, IN_FEATURES, OPTION_WORDS, "auto|none|FILE", NULL, false, 0, TEXTS_CAPACITY, "auto",
+     MEMBER(features), 0,
      "auto: sharp edges and corners of the solid are kept as edges and vertices of the mesh; none: they are not looked for; "
      "a file: "
      "its points and lines are kept, and what is found besides, unless none is given too (text, OBJ, Gmsh, VTK: "
@@ -157,10 +160,10 @@ const option option_rows[] = {
     {"no-keep-thin", 0, MESH | INFO, IN_FEATURES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(no_keep_thin), 0,
      "let walls and gaps thinner than about the size go as they go; else those down to half the size are kept, or named"},
 
-    {"align", 0, MESH, IN_SHAPE, OPTION_ALIGNMENT, "HOW", NULL, false, 0, 0, "none", MEMBER(alignment), 0,
+    {"align", 0, MESH, IN_SHAPE, OPTION_ALIGNMENT, "none|pca|NUMBERS", NULL, false, 0, 0, "none", MEMBER(alignment), 0,
      "how the lattice lies: none, pca (principal axes), an axis and an angle in degrees as x,y,z,angle, or a rotation matrix as "
      "9 numbers row by row"},
-    {"method", 0, MESH, IN_SHAPE, OPTION_METHOD, "HOW", NULL, false, 0, 0, "auto", MEMBER(method), 0,
+    {"method", 0, MESH, IN_SHAPE, OPTION_METHOD, "auto|snap|stuff", NULL, false, 0, 0, "auto", MEMBER(method), 0,
      "how the boundary is made: snap (no tetrahedron is cut), stuff (warped and cut, with proved angles), or auto: snapped, and "
      "stuffed where snapping leaves the guaranteed window"},
     {"guarantee", 0, MESH, IN_SHAPE, OPTION_REAL, "DEG", "degrees", false, 0, 28, "14.4", MEMBER(guarantee), 0,
@@ -187,20 +190,31 @@ const option option_rows[] = {
      "most passes over what is outside the window; the mesh is the same on any machine"},
     {"budget", 0, IMPROVE, IN_IMPROVE, OPTION_REAL, "SECONDS", "seconds", true, 0, 1e9, "no limit", MEMBER(budget), 0,
      "when to stop improving and write what there is; with it the mesh depends on the machine"},
-    {"cut", 0, VIEW, IN_PICTURE, OPTION_WORD, "PLANE", NULL, false, 0, 0, NULL, MEMBER(cut), 0,
-     "leave out what lies in front of a plane: x, y or z through the middle, or a,b,c,d for what has a corner with "
-     "a x + b y + c z > d"},
-    {"color", 0, VIEW, IN_PICTURE, OPTION_WORD, "BY", NULL, false, 0, 0, "class", MEMBER(color), 0,
+    {"cut", 0, VIEW, IN_PICTURE, OPTION_WORD, "x|y|z|A,B,C,D", NULL, false, 0, 0, NULL, MEMBER(cut), 0,
+     "leave out what lies in front of a plane: x, y or z through the middle, or A,B,C,D for what has a corner with "
+     "A x + B y + C z > D"},
+    {"color", 0, VIEW, IN_PICTURE, OPTION_WORD, "class|dihedral|quality|size|distance", NULL, false, 0, 0, "class", MEMBER(color),
+     0,
      "class: surface and inside; dihedral or quality: from blue (as the tiling's) through amber to red (flat), by the dihedral "
      "angle furthest from the tiling's or by the volume-length ratio; size: from purple (the shortest edges of the mesh) through "
-     "green to yellow (the longest)"},
+     "green to yellow (the longest); distance: the boundary, from blue to red where it is furthest from --surface"},
+    {"surface", 0, VIEW, IN_PICTURE, OPTION_WORD, "INPUT", NULL, false, 0, 0, NULL, MEMBER(surface), 0,
+     "with --color distance: the solid that the mesh should fill, as `laves mesh` takes it; distances to solids that are no "
+     "surface "
+     "files are of first order"},
+    {"worst", 0, VIEW, IN_PICTURE, OPTION_COUNT, "N", "tetrahedra", false, 0, 1000, "0", MEMBER(worst), 0,
+     "draw the worst tetrahedra over the paled mesh, each in a ring, and list them: by volume-length ratio with --color quality, "
+     "else "
+     "by dihedral angle"},
+    {"plot", 0, VIEW, IN_PICTURE, OPTION_WORD, "dihedral|radius-ratio|radius-edge|all", NULL, false, 0, 0, NULL, MEMBER(plot), 0,
+     "no picture but a histogram (SVG) of all dihedral angles, of 3 r / R, or of R / shortest edge; all: the three side by side"},
     {"view", 0, VIEW, IN_PICTURE, OPTION_WORD, "AZ,EL", "degrees", false, 0, 0, "30,25", MEMBER(view), 0,
      "where the viewer stands: around the upward axis, and above the horizon"},
-    {"up", 0, VIEW, IN_PICTURE, OPTION_WORD, "AXIS", NULL, false, 0, 0, "z", MEMBER(up), 0, "upward axis: x, y or z"},
-    {"size", 0, VIEW, IN_PICTURE, OPTION_WORD, "WxH", "pixels", false, 0, 0, "1200x900", MEMBER(pixels), 0,
+    {"up", 0, VIEW, IN_PICTURE, OPTION_WORD, "x|y|z", NULL, false, 0, 0, "z", MEMBER(up), 0, "upward axis"},
+    {"size", 0, VIEW, IN_PICTURE, OPTION_WORD, "WxH", "pixels", false, 0, 0, "1200x900; plots 480x320", MEMBER(pixels), 0,
      "width and height, 16 to 16384 each"},
-    {"background", 0, VIEW, IN_PICTURE, OPTION_WORD, "HOW", NULL, false, 0, 0, "white", MEMBER(background), 0,
-     "white, transparent or dark"},
+    {"background", 0, VIEW, IN_PICTURE, OPTION_WORD, "white|transparent|dark", NULL, false, 0, 0, "white", MEMBER(background), 0,
+     "what is behind the mesh"},
     {"lines", 0, VIEW, IN_PICTURE, OPTION_REAL, "W", "pixels", false, 0, 20, "0.9", MEMBER(lines), 0,
      "width of the edges; 0: none"},
     {"creases", 0, VIEW, IN_PICTURE, OPTION_REAL, "W", "pixels", false, 0, 20, "0", MEMBER(creases), 0,
@@ -211,7 +225,7 @@ const option option_rows[] = {
     {"output", 'o', TILING, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, OUTPUT_CAPACITY, NULL, MEMBER(outputs), 0,
      "write the tiling as a mesh; repeat it for several formats"},
     {"output", 'o', VIEW, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, OUTPUT_CAPACITY, NULL, MEMBER(outputs), 0,
-     "where the picture goes (PNG); needed"},
+     "where the picture goes (PNG; with --plot SVG); needed"},
     {"output", 'o', IMPROVE, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, OUTPUT_CAPACITY, NULL, MEMBER(outputs), 0,
      "where the improved mesh goes; needed; repeat it for several formats"},
     {"format", 0, MESH | TILING | IMPROVE, IN_FILES, OPTION_FORMAT, "NAME", NULL, false, 0, 0, "from the extension",
@@ -222,7 +236,7 @@ const option option_rows[] = {
      "compression of VTU, 0 none to 9 smallest"},
     {"boundary", 0, MESH | IMPROVE, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(boundary), 0,
      "also write the boundary surface (.stl, .obj, .ply, .off)"},
-    {"regions", 0, MESH, IN_FILES, OPTION_REGIONS, "HOW", NULL, false, 0, 0, "none", MEMBER(regions), 0,
+    {"regions", 0, MESH, IN_FILES, OPTION_REGIONS, "none|parts", NULL, false, 0, 0, "none", MEMBER(regions), 0,
      "what tetrahedra are told apart by: none, or parts: the closed parts of the input surface that contain them, the innermost "
      "where parts are nested (docs/formats.md)"},
     {"face-sources", 0, MESH, IN_FILES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(face_sources), 0,

@@ -9,9 +9,10 @@
 
 /* What the kinds are called in the dump. */
 static const char *const kind_names[] = {
-    [OPTION_FLAG] = "flag",     [OPTION_WORD] = "text",           [OPTION_WORDS] = "texts",   [OPTION_REAL] = "real",
-    [OPTION_COUNT] = "count",   [OPTION_BYTES] = "bytes",         [OPTION_WINDOW] = "window", [OPTION_CELLS] = "cells",
-    [OPTION_FORMAT] = "format", [OPTION_ALIGNMENT] = "alignment", [OPTION_METHOD] = "method", [OPTION_REGIONS] = "regions",
+    [OPTION_SWITCH] = "switch",   [OPTION_FLAG] = "flag",     [OPTION_WORD] = "text",           [OPTION_WORDS] = "texts",
+    [OPTION_REAL] = "real",       [OPTION_COUNT] = "count",   [OPTION_BYTES] = "bytes",         [OPTION_WINDOW] = "window",
+    [OPTION_CELLS] = "cells",     [OPTION_FORMAT] = "format", [OPTION_ALIGNMENT] = "alignment", [OPTION_METHOD] = "method",
+    [OPTION_REGIONS] = "regions",
 };
 _Static_assert(sizeof kind_names / sizeof kind_names[0] == OPTION_KINDS, "a kind has no name");
 
@@ -42,24 +43,24 @@ static void option_spelling(const option *row, char *text, size_t size) {
   snprintf(text, size, "%s--%s%s%s", letter, row->name, row->argument ? " " : "", row->argument ? row->argument : "");
 }
 
-/* The help of a row, with what only the library knows filled in. */
-static void option_help(const option *row, char *text, size_t size) {
+const char *option_help(const option *row, char *text, size_t size) {
   snprintf(text, size, "%s", row->help);
   if (row->kind == OPTION_FORMAT) option_format_names(text + strlen(text), size - strlen(text));
+  return text;
 }
 
-static bool has_range(const option *row) {
+bool option_has_range(const option *row) {
   return row->kind == OPTION_REAL || row->kind == OPTION_COUNT || row->kind == OPTION_CELLS;
 }
 
-enum { HELP_CAPACITY = 400, HELP_INDENT = 25 };
+enum { HELP_INDENT = 25 };
 
 static void print_option(FILE *file, const option *row) {
-  char spelling[64], help[HELP_CAPACITY], range[64], line[HELP_CAPACITY + 200];
+  char spelling[64], help[OPTION_HELP_CAPACITY], range[64], line[OPTION_HELP_CAPACITY + 200];
   option_spelling(row, spelling, sizeof spelling);
   option_help(row, help, sizeof help);
   snprintf(line, sizeof line, "%s", help);
-  if (has_range(row)) {
+  if (option_has_range(row)) {
     const size_t used = strlen(line);
     snprintf(line + used, sizeof line - used, " (%s%s%s)", option_range(row, range, sizeof range), row->unit ? ", " : "",
              row->unit ? row->unit : "");
@@ -105,7 +106,7 @@ void options_print_overview(FILE *file) {
     fprintf(file, "  laves %-14s %s\n", usage, commands[i].summary);
   }
   fprintf(file,
-          "  laves help [COMMAND] the same as COMMAND --help\n"
+          "  laves help [COMMAND] the same as COMMAND --help; --man, --completion SHELL: for your system\n"
           "  laves --version      say which version this is\n\n"
           "Try: laves mesh 'sphere(1) - cylinder{r=0.4}' -o bead.vtu\n");
 }
@@ -120,13 +121,15 @@ static void print_markdown_text(FILE *file, const char *text) {
 }
 
 static void print_markdown_row(FILE *file, const option *row) {
-  char spelling[64], help[HELP_CAPACITY], range[64];
+  char spelling[64], help[OPTION_HELP_CAPACITY], range[64];
   option_spelling(row, spelling, sizeof spelling);
   option_help(row, help, sizeof help);
-  fprintf(file, "| `%s` | ", spelling);
+  fputs("| `", file);
+  print_markdown_text(file, spelling);
+  fputs("` | ", file);
   print_markdown_text(file, help);
-  fprintf(file, " | %s | %s | %s |\n", has_range(row) ? option_range(row, range, sizeof range) : "", row->unit ? row->unit : "",
-          row->standard ? row->standard : "");
+  fprintf(file, " | %s | %s | %s |\n", option_has_range(row) ? option_range(row, range, sizeof range) : "",
+          row->unit ? row->unit : "", row->standard ? row->standard : "");
 }
 
 void options_print_markdown(FILE *file) {
@@ -146,7 +149,7 @@ void options_print_markdown(FILE *file) {
 }
 
 static void print_json_option(json *out, const option *row) {
-  char help[HELP_CAPACITY];
+  char help[OPTION_HELP_CAPACITY];
   const char letter[2] = {row->letter, '\0'};
   option_help(row, help, sizeof help);
   json_open_object(out, NULL);
@@ -155,7 +158,7 @@ static void print_json_option(json *out, const option *row) {
   json_text(out, "kind", kind_names[row->kind]);
   json_text(out, "argument", row->argument);
   json_text(out, "unit", row->unit);
-  if (has_range(row)) {
+  if (option_has_range(row)) {
     json_number(out, "low", row->low);
     json_number(out, "high", row->high);
     json_boolean(out, "above_low", row->above);

@@ -57,13 +57,24 @@ static int unknown_command(const char *word) {
   return EXIT_USAGE;
 }
 
-static int show_help(const char *topic) {
+static int show_completion(const char *shell) {
+  if (shell && options_print_completion(stdout, shell)) return finish_output();
+  text_error("completion is there for bash, zsh and fish: laves help --completion bash");
+  return EXIT_USAGE;
+}
+
+/* `more`: the word after the topic, or NULL. */
+static int show_help(const char *topic, const char *more) {
   if (!topic) {
     options_print_overview(stdout);
   } else if (strcmp(topic, "--markdown") == 0) {
     options_print_markdown(stdout);
   } else if (strcmp(topic, "--options") == 0) {
     options_print_json(stdout);
+  } else if (strcmp(topic, "--man") == 0) {
+    options_print_manual(stdout);
+  } else if (strcmp(topic, "--completion") == 0) {
+    return show_completion(more);
   } else if (command_find(topic)) {
     options_print_help(stdout, command_find(topic));
   } else {
@@ -85,8 +96,8 @@ int main(int count, char **words) {
     printf("laves %s\n", laves_version());
     return finish_output();
   }
-  if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) return show_help(NULL);
-  if (strcmp(name, "help") == 0) return show_help(count > 2 ? words[2] : NULL);
+  if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) return show_help(NULL, NULL);
+  if (strcmp(name, "help") == 0) return show_help(count > 2 ? words[2] : NULL, count > 3 ? words[3] : NULL);
   const command *about = command_find(name);
   if (!about) return unknown_command(name);
 

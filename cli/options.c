@@ -393,7 +393,6 @@ options_outcome options_parse(const command *about, int count, char **words, set
                       .color = "class",
                       .view = "30,25",
                       .up = "z",
-                      .pixels = "1200x900",
                       .background = "white",
                       .lines = 0.9};
   given->window.values[0] = 40;

@@ -66,6 +66,8 @@ typedef struct settings {
   const char *cut; /* NULL: not given */
   const char *color, *view, *up, *pixels, *background;
   double lines, creases; /* pixels */
+  const char *plot;      /* NULL: a picture */
+  int64_t worst;
 } settings;
 
 typedef enum option_kind {
@@ -93,7 +95,7 @@ typedef struct option {
   unsigned commands;
   const char *section;
   option_kind kind;
-  const char *argument; /* NULL for flags */
+  const char *argument; /* NULL for flags; "a|b|FILE": one of these words, or a file (completion.c) */
   const char *unit;     /* NULL: none */
   bool above;           /* the lowest value itself is not allowed */
   double low, high;
@@ -131,6 +133,10 @@ options_outcome options_parse(const command *about, int count, char **words, set
 const char *option_range(const option *row, char *text, size_t size);
 /* The names of all formats with commas between. */
 void option_format_names(char *text, size_t size);
+/* The help of a row, with what only the library knows filled in; returns text. */
+enum { OPTION_HELP_CAPACITY = 400 };
+const char *option_help(const option *row, char *text, size_t size);
+bool option_has_range(const option *row);
 
 /* ---- help ---- */
 
@@ -140,5 +146,9 @@ void options_print_overview(FILE *file);
 void options_print_markdown(FILE *file);
 /* The whole table as JSON. */
 void options_print_json(FILE *file);
+/* The man page laves(1). */
+void options_print_manual(FILE *file);
+/* The completion file of a shell: bash, zsh or fish; false for another. */
+bool options_print_completion(FILE *file, const char *shell);
 
 #endif

@@ -224,13 +224,19 @@ static uint8_t to_srgb(double linear) {
   return (uint8_t)lround(255 * fmax(0, fmin(1, s)));
 }
 
-/* Lays the pixels over the background. */
-static void compose(const raster_pixel *pixels, const float *occlusion, const picture_options *options, uint8_t *rgba) {
+static double paper_light(const picture_options *options) { return options->background == PICTURE_DARK ? 0.012 : 1; }
+
+/* What is left of a scene that something is drawn over. */
+static const double pale_share = 0.45;
+
+/* Lays the pixels over the background. `share` of their colour is kept, the rest is background. */
+static void compose(const raster_pixel *pixels, const float *occlusion, double share, const picture_options *options,
+                    uint8_t *rgba) {
   size_t count = (size_t)options->width * (size_t)options->height;
-  double paper = options->background == PICTURE_DARK ? 0.012 : 1;
+  double paper = paper_light(options);
   for (size_t i = 0; i < count && !interrupt_asked(); i++) {
     const raster_pixel *pixel = &pixels[i];
-    double light = fmax(0.15, 1 - occlusion_darkness * 2.2 * occlusion[i]), cover = pixel->coverage;
+    double light = share * fmax(0.15, 1 - occlusion_darkness * 2.2 * occlusion[i]), cover = share * pixel->coverage;
     bool clear = options->background == PICTURE_TRANSPARENT;
     for (int k = 0; k < 3; k++) {
       double colour = light * pixel->colour[k];
@@ -240,7 +246,71 @@ static void compose(const raster_pixel *pixels, const float *occlusion, const pi
   }
 }
 
-bool picture_draw(const scene *subject, const picture_options *options, uint8_t *rgba) {
+/* ---- what is drawn over the scene ---- */
+
+static double from_srgb(uint8_t value) {
+  double s = value / 255.0;
+  return s <= 0.04045 ? s / 12.92 : pow((s + 0.055) / 1.055, 2.4);
+}
+
+/* Lays a colour that covers a share of a pixel over what is there. */
+static void lay_over(uint8_t *rgba, const float premultiplied[3], double cover) {
+  double below = rgba[3] / 255.0 * (1 - cover), alpha = cover + below;
+  for (int k = 0; alpha > 0 && k < 3; k++) {
+    rgba[k] = to_srgb((premultiplied[k] + below * from_srgb(rgba[k])) / alpha);
+  }
+  rgba[3] = (uint8_t)lround(255 * fmin(1, alpha));
+}
+
+static void draw_ring(double x, double y, double radius, const picture_options *options, uint8_t *rgba) {
+  static const float ring_colour[3] = {0.42f, 0.02f, 0.015f};
+  static const double half_width = 0.9;
+  int reach = (int)ceil(radius + 2);
+  for (int py = (int)y - reach; py <= (int)y + reach; py++) {
+    for (int px = (int)x - reach; px <= (int)x + reach; px++) {
+      if (px < 0 || py < 0 || px >= options->width || py >= options->height) {
+        continue;
+      }
+      double off = fabs(hypot(px + 0.5 - x, py + 0.5 - y) - radius);
+      float cover = (float)fmax(0, fmin(1, half_width + 0.5 - off)), colour[3];
+      for (int k = 0; k < 3; k++) {
+        colour[k] = cover * ring_colour[k];
+      }
+      lay_over(&rgba[4 * ((size_t)py * (size_t)options->width + (size_t)px)], colour, cover);
+    }
+  }
+}
+
+/* A ring around the four triangles of a tetrahedron. */
+static void ring_tet(const raster_triangle triangles[4], const picture_options *options, uint8_t *rgba) {
+  static const double least_radius = 9, room = 1.5;
+  double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+  for (int i = 0; i < 12; i++) {
+    box[0] = fmin(box[0], triangles[i / 3].x[i % 3]);
+    box[1] = fmin(box[1], triangles[i / 3].y[i % 3]);
+    box[2] = fmax(box[2], triangles[i / 3].x[i % 3]);
+    box[3] = fmax(box[3], triangles[i / 3].y[i % 3]);
+  }
+  double radius = fmax(least_radius, room * 0.5 * fmax(box[2] - box[0], box[3] - box[1]));
+  draw_ring(0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3]), radius, options, rgba);
+}
+
+static bool draw_over(const scene *over, const camera *c, const picture_options *options, raster_pixel *pixels, uint8_t *rgba) {
+  raster_triangle *triangles = make_triangles(over, c, options);
+  bool done = triangles && raster_draw(triangles, over->face_count, pixels, options->width, options->height);
+  for (size_t i = 0; done && i < (size_t)options->width * (size_t)options->height; i++) {
+    if (pixels[i].coverage > 0) {
+      lay_over(&rgba[4 * i], pixels[i].colour, fmin(1, pixels[i].coverage));
+    }
+  }
+  for (size_t i = 0; done && i < over->face_count / 4; i++) {
+    ring_tet(&triangles[4 * i], options, rgba);
+  }
+  free(triangles);
+  return done;
+}
+
+bool picture_draw(const scene *subject, const scene *over, const picture_options *options, uint8_t *rgba) {
   bool done = false;
   float *occlusion = NULL;
   camera c = place_camera(subject, options);
@@ -253,8 +323,8 @@ bool picture_draw(const scene *subject, const picture_options *options, uint8_t 
   if (!occlusion) {
     goto done;
   }
-  compose(pixels, occlusion + (size_t)options->width * (size_t)options->height, options, rgba);
-  done = !interrupt_asked();
+  compose(pixels, occlusion + (size_t)options->width * (size_t)options->height, over ? pale_share : 1, options, rgba);
+  done = (!over || draw_over(over, &c, options, pixels, rgba)) && !interrupt_asked();
 done:
   free(pixels);
   free(triangles);

@@ -20,8 +20,11 @@ typedef struct picture_options {
 void picture_direction(const picture_options *options, double direction[3]);
 
 /// Draws the scene to fill the picture but for a margin.
+/// @param over  drawn over it, whatever hides it, each four faces (a tetrahedron) with a ring around; the scene is paled then.
+/// NULL:
+///              nothing
 /// @param rgba  out: uint8_t[height][width][4], sRGB, not premultiplied
 /// @return false when memory is short
-bool picture_draw(const scene *subject, const picture_options *options, uint8_t *rgba);
+bool picture_draw(const scene *subject, const scene *over, const picture_options *options, uint8_t *rgba);
 
 #endif

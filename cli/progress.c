@@ -2,12 +2,15 @@
  *
  *   improve   ━━━━━━━━━━━━━━━━━━━──────────  64 %  3.1 s left
  *
- * It is drawn after a short while only, ten times a second at most, and wiped when the call into the library returns. */
+ * It is drawn after a short while only, ten times a second at most, and wiped when the call into the library returns. On a narrow
+ * terminal the bar shrinks, then the time goes, then the bar, so that the line never wraps. */
 #include "progress.h"
 
 #include <stdio.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "interrupt.h"
 #include "text.h"
@@ -30,24 +33,45 @@ progress progress_start(bool wanted) {
   return bar;
 }
 
-static void draw_bar(const progress *bar, int filled) {
+static void draw_bar(const progress *bar, int width) {
+  const int filled = (int)(bar->fraction * width);
   if (bar->colour) fputs("\033[36m", stderr);
   for (int i = 0; i < filled; ++i) fputs(bar->utf8 ? "\u2501" : "#", stderr);
   if (bar->colour) fputs("\033[2m", stderr);
-  for (int i = filled; i < BAR_WIDTH; ++i) fputs(bar->utf8 ? "\u2500" : ".", stderr);
+  for (int i = filled; i < width; ++i) fputs(bar->utf8 ? "\u2500" : ".", stderr);
   if (bar->colour) fputs("\033[0m", stderr);
 }
 
-static void draw(progress *bar, double now) {
+/* Columns that a line may take without being wrapped, which could not be wiped. */
+static int line_room(void) {
+  enum { UNKNOWN = 80 };
+  struct winsize window;
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0;
+  return (known ? window.ws_col : UNKNOWN) - 1;
+}
+
+/* Per cent, and the time left where it can be guessed and there is room. */
+static void draw_line(const progress *bar, double spent) {
+  enum { NAME_WIDTH = 13, LEAST_BAR = 5 };
+  char done[16], left[64] = "";
   const double fraction = bar->fraction;
-  fprintf(stderr, "\r%-12.12s ", bar->phase);
-  draw_bar(bar, (int)(fraction * BAR_WIDTH));
-  fprintf(stderr, " %3d %%", (int)(fraction * 100));
-  const double spent = now - bar->phase_start;
+  snprintf(done, sizeof done, " %3d %%", (int)(fraction * 100));
   if (spent > foresight_seconds && fraction > 0.02) {
-    text_buffer left;
-    fprintf(stderr, "  %s left", text_seconds(&left, spent * (1 - fraction) / fraction));
+    text_buffer seconds;
+    snprintf(left, sizeof left, "  %s left", text_seconds(&seconds, spent * (1 - fraction) / fraction));
   }
+  int room = line_room() - NAME_WIDTH - (int)strlen(done);
+  if (room - (int)strlen(left) < LEAST_BAR) left[0] = '\0';
+  room -= (int)strlen(left);
+  const int name = room < 0 ? NAME_WIDTH + room : NAME_WIDTH;
+  if (name > 0) fprintf(stderr, "%-*.*s", name, name - 1, bar->phase);
+  if (room >= LEAST_BAR) draw_bar(bar, room < BAR_WIDTH ? room : BAR_WIDTH);
+  fprintf(stderr, "%s%s", done, left);
+}
+
+static void draw(progress *bar, double now) {
+  fputc('\r', stderr);
+  draw_line(bar, now - bar->phase_start);
   fputs("\033[K", stderr);
   bar->shown = true;
   bar->drawn = now;

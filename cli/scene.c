@@ -13,9 +13,7 @@
 #include <string.h>
 
 #include "interrupt.h"
-
-/* Faces of a positive tetrahedron, outwards; face i is opposite corner i. */
-static const int tet_face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+#include "tet_shape.h"
 
 enum { dropped_side = 1, near_face = 2 };
 
@@ -167,63 +165,14 @@ static void cross(const double a[3], const double b[3], double out[3]) {
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* How near a tetrahedron's dihedral angles are to the tiling's: 1 when all lie in [60, 75] degrees, 0 when it is flat. */
-static double dihedral_score(double p[4][3]) {
-  double normals[4][3];
-  for (int f = 0; f < 4; f++) {
-    double u[3], v[3];
-    subtract(p[tet_face[f][1]], p[tet_face[f][0]], u);
-    subtract(p[tet_face[f][2]], p[tet_face[f][0]], v);
-    cross(u, v, normals[f]);
-  }
-  double smallest = 180, largest = 0;
-  for (int a = 0; a < 4; a++) {
-    for (int b = a + 1; b < 4; b++) {
-      double c = -dot(normals[a], normals[b]) / sqrt(dot(normals[a], normals[a]) * dot(normals[b], normals[b]));
-      double angle = acos(fmax(-1, fmin(1, c))) * 180 / 3.14159265358979323846;
-      smallest = fmin(smallest, angle);
-      largest = fmax(largest, angle);
-    }
-  }
-  return fmax(0, fmin(1, fmin(smallest / 60, (180 - largest) / 105)));
-}
-
-/* sqrt of the mean squared edge. */
-static double edge_length(double p[4][3]) {
-  double squares = 0, edge[3];
-  for (int a = 0; a < 4; a++) {
-    for (int b = a + 1; b < 4; b++) {
-      subtract(p[b], p[a], edge);
-      squares += dot(edge, edge) / 6;
-    }
-  }
-  return sqrt(squares);
-}
-
-/* sqrt(2) 6V / rms(edge)^3: 1 for the regular tetrahedron. */
-static double volume_length(double p[4][3]) {
-  double u[3], v[3], w[3], n[3];
-  subtract(p[1], p[0], u);
-  subtract(p[2], p[0], v);
-  subtract(p[3], p[0], w);
-  cross(u, v, n);
-  return fmax(0, sqrt(2) * dot(n, w) / pow(edge_length(p), 3));
-}
-
-static void tet_corners(const laves_mesh *mesh, int64_t tet, double p[4][3]) {
-  for (int k = 0; k < 4; k++) {
-    memcpy(p[k], laves_mesh_points(mesh) + 3 * laves_mesh_tets(mesh)[4 * tet + k], sizeof p[k]);
-  }
-}
-
 /* The range that colours span. Where sizes hardly vary it is wider than theirs, lest a uniform mesh look graded. */
 static void size_range(const laves_mesh *mesh, double range[2]) {
   static const double least_span = 4;
   double low = INFINITY, high = 0, p[4][3];
   for (size_t i = 0; i < laves_mesh_tet_count(mesh) && !interrupt_asked(); i++) {
     tet_corners(mesh, (int64_t)i, p);
-    low = fmin(low, edge_length(p));
-    high = fmax(high, edge_length(p));
+    low = fmin(low, tet_edge_length(p));
+    high = fmax(high, tet_edge_length(p));
   }
   double widen = sqrt(fmax(1, least_span * low / high));
   range[0] = low / widen;
@@ -279,18 +228,25 @@ static void class_colour(bool boundary, int32_t region, float out[3]) {
   linear_colour(boundary ? 0x8fb8dc : inside[row], out);
 }
 
-static void fill_face(const laves_mesh *mesh, const face_entry *entry, scene_colour colour, const double sizes[2],
-                      scene_face *out) {
-  const int32_t *regions = laves_mesh_regions(mesh);
-  int64_t tet = entry->owner / 4;
-  int corner = (int)(entry->owner % 4);
-  double p[4][3], u[3], v[3], inwards[3];
-  tet_corners(mesh, tet, p);
+/* Where distances are told apart: what is no part of the surface is grey. */
+static const uint32_t neutral = 0xcfcfcf;
+
+static void tet_colour(double p[4][3], scene_colour colour, const double sizes[2], float out[3]) {
+  if (colour == SCENE_SIZE) {
+    size_colour(tet_edge_length(p), sizes, out);
+  } else {
+    score_colour(colour == SCENE_QUALITY ? tet_volume_length(p) : tet_dihedral_score(p), out);
+  }
+}
+
+/* Places the face of a tetrahedron opposite a corner; colours are left to the caller. */
+static void place_face(const laves_mesh *mesh, int64_t tet, int corner, double p[4][3], scene_face *out) {
+  double u[3], v[3], inwards[3];
   for (int k = 0; k < 3; k++) {
     memcpy(out->points[k], p[tet_face[corner][k]], sizeof p[k]);
     out->vertex[k] = laves_mesh_tets(mesh)[4 * tet + tet_face[corner][k]];
   }
-  out->boundary = entry->all == 1;
+  out->boundary = false;
   out->creases = 0;
   subtract(out->points[1], out->points[0], u);
   subtract(out->points[2], out->points[0], v);
@@ -301,12 +257,72 @@ static void fill_face(const laves_mesh *mesh, const face_entry *entry, scene_col
   for (int i = 0; i < 3; i++) {
     out->normal[i] *= scale;
   }
+}
+
+static void fill_face(const laves_mesh *mesh, const face_entry *entry, scene_colour colour, const double sizes[2],
+                      scene_face *out) {
+  const int32_t *regions = laves_mesh_regions(mesh);
+  int64_t tet = entry->owner / 4;
+  double p[4][3];
+  tet_corners(mesh, tet, p);
+  place_face(mesh, tet, (int)(entry->owner % 4), p, out);
+  out->boundary = entry->all == 1;
   if (colour == SCENE_CLASS) {
     class_colour(entry->all == 1, regions ? regions[tet] : 1, out->colour);
-  } else if (colour == SCENE_SIZE) {
-    size_colour(edge_length(p), sizes, out->colour);
+  } else if (colour == SCENE_DISTANCE) {
+    linear_colour(neutral, out->colour);
   } else {
-    score_colour(colour == SCENE_DIHEDRAL ? dihedral_score(p) : volume_length(p), out->colour);
+    tet_colour(p, colour, sizes, out->colour);
+  }
+}
+
+/* ---- single tetrahedra ---- */
+
+/* The scores of the worst so far, worst first: a new one is put in its place. */
+static size_t insert_worst(int64_t *tets, double *scores, size_t count, size_t capacity, int64_t tet, double score) {
+  if (count == capacity && !(score < scores[count - 1])) {
+    return count;
+  }
+  size_t place = count < capacity ? count : count - 1;
+  for (; place > 0 && score < scores[place - 1]; place--) {
+    tets[place] = tets[place - 1];
+    scores[place] = scores[place - 1];
+  }
+  tets[place] = tet;
+  scores[place] = score;
+  return count < capacity ? count + 1 : count;
+}
+
+size_t scene_worst_tets(const laves_mesh *mesh, scene_colour colour, int64_t *tets, double *scores, size_t capacity) {
+  size_t count = 0;
+  double p[4][3];
+  for (size_t i = 0; i < laves_mesh_tet_count(mesh) && capacity > 0 && !interrupt_asked(); i++) {
+    tet_corners(mesh, (int64_t)i, p);
+    double score = colour == SCENE_QUALITY ? tet_volume_length(p) : tet_dihedral_score(p);
+    count = insert_worst(tets, scores, count, capacity, (int64_t)i, score);
+  }
+  return count;
+}
+
+bool scene_build_tets(const laves_mesh *mesh, const int64_t *tets, size_t count, scene_colour colour, scene *out) {
+  *out = (scene){.faces = calloc(4 * count + 1, sizeof *out->faces), .face_count = 4 * count, .kept_tets = count};
+  for (size_t i = 0; out->faces && i < count; i++) {
+    double p[4][3];
+    tet_corners(mesh, tets[i], p);
+    for (int f = 0; f < 4; f++) {
+      scene_face *face = &out->faces[4 * i + (size_t)f];
+      place_face(mesh, tets[i], f, p, face);
+      tet_colour(p, colour == SCENE_QUALITY ? SCENE_QUALITY : SCENE_DIHEDRAL, out->sizes, face->colour);
+    }
+  }
+  return out->faces != NULL;
+}
+
+void scene_colour_distances(scene *subject, const double *distances, double furthest) {
+  for (size_t i = 0; i < subject->face_count; i++) {
+    if (subject->faces[i].boundary) {
+      score_colour(1 - (furthest > 0 ? fmin(1, distances[i] / furthest) : 0), subject->faces[i].colour);
+    }
   }
 }
 

@@ -4,7 +4,7 @@
 
 #include <laves/laves.h>
 
-typedef enum scene_colour { SCENE_CLASS, SCENE_DIHEDRAL, SCENE_QUALITY, SCENE_SIZE } scene_colour;
+typedef enum scene_colour { SCENE_CLASS, SCENE_DIHEDRAL, SCENE_QUALITY, SCENE_SIZE, SCENE_DISTANCE } scene_colour;
 
 typedef struct scene_options {
   bool cut;
@@ -32,6 +32,21 @@ typedef struct scene {
 
 /// Returns false when memory is short. `out` is freed with scene_free() in any case.
 bool scene_build(const laves_mesh *mesh, const scene_options *options, scene *out);
+
+/// Finds the worst tetrahedra, worst first: by the volume-length ratio for SCENE_QUALITY, else by the dihedral angle furthest
+/// from the tiling's.
+/// @param tets    out: int64_t[capacity]    @param scores  out: double[capacity], 0 flat to 1 as the tiling's
+/// @return how many there are, `capacity` at most
+size_t scene_worst_tets(const laves_mesh *mesh, scene_colour colour, int64_t *tets, double *scores, size_t capacity);
+
+/// A scene of all faces of some tetrahedra, in the colours by which they are the worst. Returns false when memory is short; free
+/// `out` with scene_free() in any case.
+bool scene_build_tets(const laves_mesh *mesh, const int64_t *tets, size_t count, scene_colour colour, scene *out);
+
+/// Colours the boundary faces of a scene of SCENE_DISTANCE: blue on the surface, red at `furthest`.
+/// @param distances  double[face_count]; those of faces within the cut are not looked at
+void scene_colour_distances(scene *subject, const double *distances, double furthest);
+
 void scene_free(scene *subject);
 
 #endif

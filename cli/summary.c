@@ -61,6 +61,14 @@ void summary_input(const input *in, bool all) {
 
 /* ---- quality ---- */
 
+/* The colour of a bin of 5 degrees: cyan where the tiling's angles are, yellow outside the window that is asked for by default,
+ * red where angles are as bad as the worst windows allow. */
+static const char *bin_colour(int bin) {
+  if (bin < 20 / 5 || bin >= 150 / 5) return "\033[31m";
+  if (bin < 40 / 5 || bin >= 125 / 5) return "\033[33m";
+  return bin >= 60 / 5 && bin < 75 / 5 ? "\033[36m" : "";
+}
+
 void summary_histogram(const size_t bins[LAVES_HISTOGRAM_BINS]) {
   static const char *const blocks[] = {" ", "\u2581", "\u2582", "\u2583", "\u2584", "\u2585", "\u2586", "\u2587", "\u2588"};
   static const char *const marks[] = {" ", ".", ":", "-", "=", "+", "*", "#", "@"};
@@ -70,7 +78,8 @@ void summary_histogram(const size_t bins[LAVES_HISTOGRAM_BINS]) {
   fputs("  dihedral angles, log scale\n  ", stderr);
   for (int i = 0; i < LAVES_HISTOGRAM_BINS; ++i) {
     const int height = bins[i] == 0 ? 0 : 1 + (int)(7 * log((double)bins[i]) / log((double)most) + 0.5);
-    fputs(shades[height], stderr);
+    const char *colour = text_has_colour() && height > 0 ? bin_colour(i) : "";
+    fprintf(stderr, "%s%s%s", colour, shades[height], colour[0] ? "\033[0m" : "");
   }
   fputs("\n  0     30    60    90    120   150  180\n", stderr);
 }
@@ -152,8 +161,10 @@ static void distance_json(json *out, const laves_check *check) {
 
 void summary_verdict(const char *path, const laves_check *check) {
   text_buffer tets, vertices, unused;
-  text_say("%s: %s, %s, %s", text_base_name(path), text_plural(&tets, check->tets, "tet"),
-           text_plural(&vertices, check->vertices, "vertex"), check->valid ? "valid" : "NOT VALID");
+  const char *colour = !text_has_colour() ? "" : check->valid ? "\033[32m" : "\033[1;31m";
+  text_say("%s: %s, %s, %s%s%s", text_base_name(path), text_plural(&tets, check->tets, "tet"),
+           text_plural(&vertices, check->vertices, "vertex"), colour, check->valid ? "valid" : "NOT VALID",
+           colour[0] ? "\033[0m" : "");
   summary_faults(check);
   if (check->unused_vertices) text_say("  %s in no tet (harmless)", text_plural(&unused, check->unused_vertices, "vertex"));
   summary_check(check);

@@ -12,6 +12,27 @@ if(TARGET laves-program)
   install(TARGETS laves-program)
 endif()
 
+# Man page and completion, which the program prints from its table of options: where it can be run while it is built.
+if(TARGET laves-program AND (NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMPILING_EMULATOR))
+  set(help_dir ${PROJECT_BINARY_DIR}/help)
+  # laves_print_help(FILE FOLDER OPTIONS...): what `laves help OPTIONS` prints becomes FILE and is installed in FOLDER.
+  function(laves_print_help file folder)
+    string(JOIN " " options ${ARGN})
+    add_custom_command(OUTPUT ${help_dir}/${file}
+      COMMAND ${CMAKE_COMMAND} "-DPROGRAM=$<TARGET_FILE:laves-program>" "-DEMULATOR=${CMAKE_CROSSCOMPILING_EMULATOR}"
+              "-DOPTIONS=${options}" "-DOUTPUT=${help_dir}/${file}" -P ${PROJECT_SOURCE_DIR}/cmake/print_help.cmake
+      DEPENDS laves-program ${PROJECT_SOURCE_DIR}/cmake/print_help.cmake VERBATIM)
+    set_property(GLOBAL APPEND PROPERTY LAVES_HELP_FILES ${help_dir}/${file})
+    install(FILES ${help_dir}/${file} DESTINATION ${folder})
+  endfunction()
+  laves_print_help(laves.1 ${CMAKE_INSTALL_MANDIR}/man1 --man)
+  laves_print_help(laves ${CMAKE_INSTALL_DATADIR}/bash-completion/completions --completion bash)
+  laves_print_help(_laves ${CMAKE_INSTALL_DATADIR}/zsh/site-functions --completion zsh)
+  laves_print_help(laves.fish ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d --completion fish)
+  get_property(help_files GLOBAL PROPERTY LAVES_HELP_FILES)
+  add_custom_target(laves-help ALL DEPENDS ${help_files})
+endif()
+
 # pkg-config. Lua has no package name of its own that holds on every system, so it goes in by library.
 set(LAVES_PC_LIBS_PRIVATE "-lz")
 foreach(library ${LUA_LIBRARIES})

@@ -105,3 +105,10 @@ done
 "${program%/*}/tests/proof" --draw "$meshes" > "$meshes/worst.txt"
 "$program" view "$meshes/smallest-angle.vtu" --color dihedral --view=-135,-10 --size 400x240 -o docs/images/proof-smallest.png
 "$program" view "$meshes/largest-angle.vtu" --color dihedral --view=-135,20 --size 400x240 -o docs/images/proof-largest.png
+
+# For docs/first-mesh.md, and the gallery from its own page.
+"$program" mesh demo/bracket.obj --size 0.06 -q --certificate none -o "$meshes/bracket.vtu"
+"$program" view "$meshes/bracket.vtu" --size 420x330 --view=-45,35 -o docs/images/first-whole.png
+"$program" view "$meshes/bracket.vtu" --size 420x330 --view=-45,35 --cut y -o docs/images/first-cut.png
+"$program" view "$meshes/bracket.vtu" --size 420x300 --plot dihedral -o docs/images/first-angles.svg
+tools/make_gallery.py "$program"

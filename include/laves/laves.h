@@ -182,6 +182,9 @@ typedef struct laves_function {
   double lipschitz;
 } laves_function;
 
+/// Builds a domain from such a function.
+/// @param function  copied; what `user` points to must outlive the domain
+/// @return LAVES_OK, LAVES_ERROR_OPTION (no callback, a box without room, a negative Lipschitz constant), LAVES_ERROR_MEMORY
 LAVES_API laves_result laves_domain_from_function(laves_context *context, const laves_function *function, laves_domain **domain,
                                                   laves_error *error);
 
@@ -243,6 +246,7 @@ typedef struct laves_domain_info {
   int tag_count;                               ///< named parts, of implicit solids too; see laves_domain_tag_name()
 } laves_domain_info;
 
+/// @param info  out: what was found when the domain was made; its texts belong to the domain
 LAVES_API void laves_domain_get_info(const laves_domain *domain, laves_domain_info *info);
 /// Name of a tag (STL solid, OBJ group, part of a script, ...), or NULL when index is not in [0, tag_count). Owned by the domain.
 LAVES_API const char *laves_domain_tag_name(const laves_domain *domain, int index);

@@ -11,17 +11,19 @@ A case is a text file; its steps run in one empty folder, where `laves` is the p
     $ COMMAND           a step, run by sh
     exit N              its exit code (0 when not said); several: one of them; -N: ended by signal N
     signal INT 0.3      sent to it after so many seconds, if it still runs; a second line: so long after the first
-    tty                 its stderr is a terminal
+    tty [COLUMNS]       its stderr is a terminal
     out GLOB, err GLOB  its stdout and stderr, line by line, blank lines apart; a line '...' stands
                         for any lines. None: not looked at. 'out' or 'err' alone says that it is empty
     json FILE NAME [OP VALUE]  a member such as seconds.total of its JSON ('-': stdout) is there, and compares:
                         == >= <= with JSON values, ~ with a GLOB
     files NAME...       all files in the folder afterwards, sorted
     same A B            two files have the same bytes
+    narrow N GLOB       lines of stderr that match, and there are some, have N columns at most; their escape sequences have none
 
 --renew rewrites the exit, out and err lines of steps that fail by what the program does now; read the difference.
 """
 import argparse
+import fcntl
 import fnmatch
 import json
 import os
@@ -29,9 +31,11 @@ import pty
 import re
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
+import termios
 import threading
 import time
 
@@ -50,6 +54,7 @@ class Step:
         self.err = None
         self.signals = []
         self.tty = False
+        self.columns = 0
         self.checks = []
         self.last_line = line
 
@@ -79,10 +84,11 @@ def parse(text):
             step.signals.append((getattr(signal, "SIG" + name), float(delay)))
         elif word == "tty":
             step.tty = True
+            step.columns = int(rest or 0)
         elif word in ("out", "err"):
             lines = getattr(step, word) or []
             setattr(step, word, lines + [rest] if rest else lines)
-        elif word in ("json", "files", "same"):
+        elif word in ("json", "files", "same", "narrow"):
             step.checks.append((word, rest))
         else:
             raise SystemExit(f"line {number + 1}: unknown word '{word}'")
@@ -129,6 +135,8 @@ def read_terminal(master, chunks):
 def run(step, folder, environment):
     """Returns exit code, stdout, stderr."""
     master, slave = pty.openpty() if step.tty else (None, subprocess.PIPE)
+    if step.columns:
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("4H", 24, step.columns, 0, 0))
     process = subprocess.Popen(["sh", "-c", "exec " + step.command if step.signals else step.command], cwd=folder,
                                env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=slave)
     chunks = []
@@ -175,8 +183,20 @@ def check_json(words, out, folder):
     return None if right else f"json {name}: {path} is {value!r}, not {operator} {wanted!r}"
 
 
-def check(kind, words, out, folder):
+def check_narrow(words, err):
+    columns, glob = words.split(" ", 1)
+    lines = [re.sub(r"\x1b\[[0-9;]*[A-Za-z]", "", line) for line in err.splitlines()]
+    lines = [line for line in lines if fnmatch.fnmatchcase(line, glob)]
+    if not lines:
+        return f"narrow: no line is like {glob}"
+    widest = max(lines, key=len)
+    return f"narrow: {len(widest)} columns: {widest}" if len(widest) > int(columns) else None
+
+
+def check(kind, words, out, err, folder):
     """Returns what is wrong, or None."""
+    if kind == "narrow":
+        return check_narrow(words, err)
     if kind == "json":
         return check_json(words, out, folder)
     if kind == "files":
@@ -194,7 +214,7 @@ def judge(step, code, out, err, folder):
     for name, patterns, text in (("out", step.out, out), ("err", step.err, err)):
         if patterns is not None and not matches(patterns, written_lines(text)):
             wrong.append(f"std{name} differs from the lines wanted")
-    wrong += [fault for fault in (check(kind, words, out, folder) for kind, words in step.checks) if fault]
+    wrong += [fault for fault in (check(kind, words, out, err, folder) for kind, words in step.checks) if fault]
     return wrong
 
 

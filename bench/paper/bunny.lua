@@ -1,0 +1,12 @@
+-- A rabbit, in place of the paper's bunny: ellipsoids that flow together. It looks along x.
+local body = ellipsoid(0.95, 0.72, 0.72):move(-0.1, 0, 0.72)
+local chest = ellipsoid(0.5, 0.5, 0.55):move(0.55, 0, 0.85)
+local haunches = ellipsoid(0.5, 0.26, 0.46):move(-0.4, 0.52, 0.5) | ellipsoid(0.5, 0.26, 0.46):move(-0.4, -0.52, 0.5)
+local head = ellipsoid(0.5, 0.4, 0.4):rotate(18, "y"):move(0.95, 0, 1.52)
+local ear = ellipsoid(0.16, 0.1, 0.52):rotate(-28, "y"):rotate(14, "x")
+local ears = ear:move(0.55, -0.2, 2.1) | ear:mirror("y"):move(0.55, 0.2, 2.1)
+local paw = ellipsoid(0.34, 0.17, 0.15)
+local paws = paw:move(0.8, 0.28, 0.15) | paw:move(0.8, -0.28, 0.15) | paw:scale(1.35, 1.1, 1.1):move(0.05, 0.58, 0.17)
+  | paw:scale(1.35, 1.1, 1.1):move(0.05, -0.58, 0.17)
+local tail = sphere(0.24):move(-1.08, 0, 0.62)
+return smooth_union(body, chest, haunches, head, ears, paws, tail, 0.18)
