@@ -9,5 +9,6 @@ int command_check(const settings *given);
 int command_info(const settings *given);
 int command_tiling(const settings *given);
 int command_view(const settings *given);
+int command_report(const settings *given);
 
 #endif
