@@ -10,5 +10,6 @@ int command_improve(const settings *given);
 int command_info(const settings *given);
 int command_tiling(const settings *given);
 int command_view(const settings *given);
+int command_report(const settings *given);
 
 #endif

@@ -215,6 +215,6 @@ int command_check(const settings *given) {
   place_list_free(&all.distant);
   free(all.features.places);
   laves_mesh_free(all.mesh);
-  laves_domain_free(all.surface.domain);
+  input_close(&all.surface);
   return session_close(&run, result);
 }

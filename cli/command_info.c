@@ -154,6 +154,6 @@ int command_info(const settings *given) {
   session_write_json(&run, &result, info_json, &all);
   laves_sizing_free(all.sizing);
   laves_features_free(all.features);
-  laves_domain_free(all.in.domain);
+  input_close(&all.in);
   return session_close(&run, result);
 }

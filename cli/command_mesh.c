@@ -9,6 +9,7 @@
 #include "groups.h"
 #include "input.h"
 #include "output.h"
+#include "report.h"
 #include "session.h"
 #include "sizing.h"
 #include "statement.h"
@@ -31,6 +32,7 @@ typedef struct mesh_run {
   laves_certificate certificate;
   bool has_certificate;
   double certify_seconds;
+  report_outcome page;
 } mesh_run;
 
 static laves_options make_options(const settings *given, const laves_sizing *sizing, const laves_features *features,
@@ -138,6 +140,18 @@ static void say_mesh(const session *run, const mesh_run *all) {
   warn_of_volume(all);
   if (promise_broken(all)) text_warning("the mesh leaves the window that was promised for it; please report this input");
   outputs_say(&all->plan);
+  if (all->page.bytes > 0) report_say(&all->page, run->given->report);
+}
+
+/* The page of --report, which needs the mesh in memory. */
+static laves_result write_report_page(session *run, mesh_run *all) {
+  const report_subject subject = {.name = all->plan.items[0].path,
+                                  .mesh = all->mesh,
+                                  .surface = &all->in,
+                                  .certificate = &all->certificate,
+                                  .defects = all->in.defects,
+                                  .making = &all->report};
+  return report_write(run, &subject, run->given->report, &all->page);
 }
 
 static laves_result mesh_steps(session *run, mesh_run *all) {
@@ -146,6 +160,7 @@ static laves_result mesh_steps(session *run, mesh_run *all) {
   input_default_output(given->input, given->format, fallback, sizeof fallback);
   laves_result result = outputs_plan(run, fallback, given->input, &all->plan);
   if (result == LAVES_OK) result = outputs_plan_certificate(run, given->input, &all->plan);
+  if (result == LAVES_OK && given->report) result = outputs_check_report(run, given->input, &all->plan);
   if (result == LAVES_OK) result = sizing_open(run, &all->sizing);
   if (result == LAVES_OK) result = features_open(run, &all->features);
   if (result == LAVES_OK) result = input_open(run, given->input, &all->in);
@@ -158,8 +173,9 @@ static laves_result mesh_steps(session *run, mesh_run *all) {
 
   const bool missed = wish_missed(given, all);
   result = LAVES_OK;
-  if (all->plan.certificate[0]) result = certify(run, all);
+  if (all->plan.certificate[0] || given->report) result = certify(run, all);
   if (result == LAVES_OK) result = outputs_write(run, all->mesh, all->has_certificate ? &all->certificate : NULL, &all->plan);
+  if (result == LAVES_OK && given->report) result = write_report_page(run, all);
   if (result == LAVES_OK && session_speaks(run)) say_mesh(run, all);
   return result == LAVES_OK && (missed || promise_broken(all)) ? LAVES_TARGET_MISSED : result;
 }
@@ -297,6 +313,7 @@ static void mesh_json(json *out, const session *run, const void *facts) {
   if (all->mesh) groups_write_json(out, all->mesh);
   outputs_write_json(out, &all->plan);
   json_text(out, "certificate", all->plan.certificate_bytes > 0 ? all->plan.certificate : NULL);
+  if (run->given->report) report_write_json(out, &all->page, run->given->report);
   if (all->mesh) write_times(out, run, all);
   json_open_array(out, "warnings");
   for (int i = 0; i < all->report.warning_count; ++i) json_text(out, NULL, all->report.warnings[i]);
@@ -312,6 +329,6 @@ int command_mesh(const settings *given) {
   laves_mesh_free(all.mesh);
   laves_sizing_free(all.sizing);
   laves_features_free(all.features);
-  laves_domain_free(all.in.domain);
+  input_close(&all.in);
   return session_close(&run, result);
 }

@@ -9,7 +9,7 @@
 #include "command.h"
 #include "options.h"
 
-enum { MESH = 1, CHECK = 2, INFO = 4, TILING = 8, VIEW = 16, IMPROVE = 32, DATA = 47, ALL = 63 };
+enum { MESH = 1, CHECK = 2, INFO = 4, TILING = 8, VIEW = 16, IMPROVE = 32, REPORT = 64, DATA = 111, ALL = 127 };
 
 const command commands[] = {
     {"mesh", "INPUT", "fill a solid with nearly regular tetrahedra",
@@ -57,6 +57,11 @@ const command commands[] = {
      "laves view bunny.vtu -o worst.png --worst 10\n"
      "laves view bunny.vtu -o angles.svg --plot dihedral\n",
      VIEW, command_view},
+    {"report", "MESH", "show a mesh on a page that opens in any browser: turned, cut, coloured, with its certificate",
+     "MESH is what `laves check` takes. The page is one HTML file that needs no network. Exit codes are those of `laves check`.",
+     "laves report bunny.vtu --surface bunny.obj -o bunny.html\n"
+     "laves mesh bunny.obj -o bunny.vtu --report bunny.html\n",
+     REPORT, command_report},
 };
 const size_t command_count = sizeof commands / sizeof commands[0];
 
@@ -88,11 +93,11 @@ const option option_rows[] = {
     {"cells", 0, TILING, IN_TILING, OPTION_CELLS, "N[,N,N]", "cells", false, 1, 1000, "4", MEMBER(cells), 0,
      "periods along each axis, 136 tetrahedra in each cell"},
 
-    {"surface", 0, CHECK, IN_CHECK, OPTION_WORD, "INPUT", NULL, false, 0, 0, NULL, MEMBER(surface), 0,
+    {"surface", 0, CHECK | REPORT, IN_CHECK, OPTION_WORD, "INPUT", NULL, false, 0, 0, NULL, MEMBER(surface), 0,
      "the solid that the mesh should fill, as `laves mesh` takes it: distances are measured both ways"},
-    {"window", 0, CHECK, IN_CHECK, OPTION_WINDOW, "LO,HI", "degrees", false, 0, 180, "40,125", MEMBER(window), 0,
+    {"window", 0, CHECK | REPORT, IN_CHECK, OPTION_WINDOW, "LO,HI", "degrees", false, 0, 180, "40,125", MEMBER(window), 0,
      "range for every dihedral angle (LO 0..60, HI 80..180); when given, exit code 3 if it or --volume-length is missed"},
-    {"volume-length", 0, CHECK, IN_CHECK, OPTION_REAL, "Q", NULL, false, 0, 0.8, "0.6", MEMBER(volume_length), 0,
+    {"volume-length", 0, CHECK | REPORT, IN_CHECK, OPTION_REAL, "Q", NULL, false, 0, 0.8, "0.6", MEMBER(volume_length), 0,
      "lowest volume-length ratio; when given, exit code 3 if it is missed"},
     {"features", 0, CHECK, IN_CHECK, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(check_features), 0,
      "measure how well the mesh keeps the creases and corners of --surface; exit code 3 when a crease that is longer than the "
@@ -105,16 +110,16 @@ const option option_rows[] = {
     {"list", 0, CHECK, IN_CHECK, OPTION_COUNT, "N", "places", false, 0, 100000, "5", MEMBER(list), 0,
      "how many of the worst places to list"},
 
-    {"winding", 0, MESH | CHECK | INFO, IN_SURFACE, OPTION_REAL, "N", NULL, false, 0.05, 100, "0.5", MEMBER(winding), 0,
+    {"winding", 0, MESH | CHECK | INFO | REPORT, IN_SURFACE, OPTION_REAL, "N", NULL, false, 0.05, 100, "0.5", MEMBER(winding), 0,
      "inside is where a surface winds round a point more often than this: 1.5 for the overlap of closed parts; below 0.5 the "
      "caps "
      "of open surfaces stand further out, above it further in"},
-    {"close-holes", 0, MESH | CHECK | INFO, IN_SURFACE, OPTION_SWITCH, "yes|no", NULL, false, 0, 0, "yes", MEMBER(close_holes), 0,
-     "no: refuse a surface that stays open once its cracks are mended, and say where"},
-    {"union", 0, MESH | CHECK | INFO, IN_SURFACE, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(unite), 3,
+    {"close-holes", 0, MESH | CHECK | INFO | REPORT, IN_SURFACE, OPTION_SWITCH, "yes|no", NULL, false, 0, 0, "yes",
+     MEMBER(close_holes), 0, "no: refuse a surface that stays open once its cracks are mended, and say where"},
+    {"union", 0, MESH | CHECK | INFO | REPORT, IN_SURFACE, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(unite), 3,
      "all that any closed part encloses is solid, whichever way its faces are directed; without it and --nested, a part within "
      "another is a hollow where its faces are directed inwards"},
-    {"nested", 0, MESH | CHECK | INFO, IN_SURFACE, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(nested), 3,
+    {"nested", 0, MESH | CHECK | INFO | REPORT, IN_SURFACE, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(nested), 3,
      "closed parts within an odd number of others are hollows, whichever way their faces are directed"},
     {"defects", 0, MESH | INFO, IN_SURFACE, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(defects), 0,
      "write where the surface's defects are, as coloured points, lines and faces (.ply, .obj, .vtp); also when it is refused"},
@@ -252,10 +257,17 @@ const option option_rows[] = {
      "verify that mesh and certificate belong together, figure by figure"},
     {"write-certificate", 0, CHECK, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(write_certificate), 0,
      "write a certificate of the mesh"},
+    {"output", 'o', REPORT, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, OUTPUT_CAPACITY, NULL, MEMBER(outputs), 0,
+     "where the page goes (HTML); needed"},
+    {"report", 0, MESH, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(report), 0,
+     "also write a page that shows the mesh in any browser (HTML; docs/report.md)"},
+    {"whole", 0, MESH | REPORT, IN_FILES, OPTION_COUNT, "N", "tetrahedra", false, 0, 2e7, "400k", MEMBER(whole), 0,
+     "the page holds meshes of up to so many tetrahedra whole, and of larger ones the boundary, sections along the axes and the "
+     "worst tetrahedra"},
     {"json", 0, DATA, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(json), 0,
      "write all facts as JSON (docs/json.md); - is the standard output"},
 
-    {"threads", 0, MESH | CHECK | INFO | IMPROVE, IN_RUN, OPTION_COUNT, "N", NULL, false, 1, 4096, "one per core",
+    {"threads", 0, MESH | CHECK | INFO | IMPROVE | REPORT, IN_RUN, OPTION_COUNT, "N", NULL, false, 1, 4096, "one per core",
      MEMBER(threads), 0, "threads to use; the mesh never depends on it"},
     {"memory", 0, ALL, IN_RUN, OPTION_BYTES, "SIZE", "bytes", false, 1, 1e18, "what the machine has", MEMBER(memory), 0,
      "most memory to hold, such as 500M or 2G (powers of 1024); exit code 4 when it is not enough, before meshing begins where "

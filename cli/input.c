@@ -47,16 +47,19 @@ static laves_surface_options surface_options(const settings *given, laves_defect
   return options;
 }
 
+/* A report shows them. */
+static bool wants_defects(const settings *given) { return given->report || strcmp(given->command, "report") == 0; }
+
 /* What was found is written whether the surface is taken or refused. */
 static laves_result open_file(session *run, const char *path, input *in) {
   const settings *given = run->given;
   laves_defects *defects = NULL;
   laves_result result = LAVES_OK;
-  if (given->defects) result = laves_defects_create(run->context, &defects, &run->error);
+  if (given->defects || wants_defects(given)) result = laves_defects_create(run->context, &defects, &run->error);
   if (result != LAVES_OK) return result;
   const laves_surface_options options = surface_options(given, defects);
   result = laves_domain_from_file_with(run->context, path, &options, &in->domain, &run->error);
-  if (defects && (result == LAVES_OK || result == LAVES_ERROR_INPUT)) {
+  if (given->defects && (result == LAVES_OK || result == LAVES_ERROR_INPUT)) {
     laves_error error = {0};
     const laves_result written = laves_defects_write(run->context, defects, given->defects, &error);
     in->defect_places = laves_defects_count(defects);
@@ -70,8 +73,15 @@ static laves_result open_file(session *run, const char *path, input *in) {
     else if (written != LAVES_OK)
       text_warning("%s", error.text); /* the refusal itself comes last */
   }
-  laves_defects_free(defects);
+  in->defects = defects;
   return result;
+}
+
+void input_close(input *in) {
+  laves_domain_free(in->domain);
+  laves_defects_free(in->defects);
+  in->domain = NULL;
+  in->defects = NULL;
 }
 
 /* An expression is no surface, and what is said about surfaces would be without effect. */

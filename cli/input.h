@@ -10,12 +10,15 @@ typedef struct input {
   const char *text; /* as given */
   laves_domain *domain;
   laves_domain_info info;
-  size_t defect_places; /* written to --defects */
-  double seconds;       /* to read it */
+  size_t defect_places;   /* written to --defects */
+  laves_defects *defects; /* of a surface, where a report wants them; NULL: not asked for */
+  double seconds;         /* to read it */
 } input;
 
-/* Opens what the words mean. Free the domain of `in` whatever the result. */
+/* Opens what the words mean. Close `in` whatever the result. */
 laves_result input_open(session *run, const char *words, input *in);
+/* Frees the domain and the defects. */
+void input_close(input *in);
 
 /* Writes the name that a mesh of this input gets by default: base name and extension of the format. */
 void input_default_output(const char *words, laves_format format, char *path, size_t size);

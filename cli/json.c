@@ -35,7 +35,8 @@ static int sequence_length(const unsigned char *text) {
   return length;
 }
 
-static void write_text(FILE *file, const char *text) {
+static void write_text(const json *out, const char *text) {
+  FILE *file = out->file;
   fputc('"', file);
   for (const unsigned char *at = (const unsigned char *)text; *at;) {
     const int length = sequence_length(at);
@@ -43,7 +44,7 @@ static void write_text(FILE *file, const char *text) {
       fputs("\\ufffd", file);
     } else if (*at == '"' || *at == '\\') {
       fprintf(file, "\\%c", *at);
-    } else if (*at < 0x20 || *at == 0x7f) {
+    } else if (*at < 0x20 || *at == 0x7f || (*at == '<' && out->in_page)) {
       fprintf(file, "\\u%04x", *at);
     } else {
       fwrite(at, 1, (size_t)length, file);
@@ -58,7 +59,7 @@ static void begin_item(json *out, const char *key) {
   new_line(out);
   out->has_items = true;
   if (!key) return;
-  write_text(out->file, key);
+  write_text(out, key);
   fputs(": ", out->file);
 }
 
@@ -85,7 +86,7 @@ void json_close(json *out) {
 void json_text(json *out, const char *key, const char *text) {
   begin_item(out, key);
   if (text) {
-    write_text(out->file, text);
+    write_text(out, text);
   } else {
     fputs("null", out->file);
   }

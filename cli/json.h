@@ -14,6 +14,7 @@ typedef struct json {
   FILE *file;
   int depth;
   bool has_items;  /* whether the open object or array already holds something */
+  bool in_page;    /* stands in an element of HTML, which no text may end: set by the caller behind json_start() */
   unsigned arrays; /* bit `depth` is set when that level is an array */
 } json;
 

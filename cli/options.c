@@ -390,6 +390,7 @@ options_outcome options_parse(const command *about, int count, char **words, set
                       .feature_angle = 40,
                       .compress = 1,
                       .list = 5,
+                      .whole = 400000,
                       .color = "class",
                       .view = "30,25",
                       .up = "z",

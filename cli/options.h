@@ -34,7 +34,7 @@ typedef struct settings {
   const char *input; /* NULL where the command takes none */
   option_texts outputs;
   const char *boundary, *json, *surface; /* NULL: not given */
-  const char *certificate, *write_certificate;
+  const char *certificate, *write_certificate, *report;
   const char *defects; /* NULL: not given */
   double winding;      /* the number that inside exceeds */
   bool close_holes, unite, nested;
@@ -50,7 +50,7 @@ typedef struct settings {
   laves_method method;
   double guarantee; /* degrees */
   laves_format format;
-  int64_t compress, threads, list;
+  int64_t compress, threads, list, whole;
   int64_t memory; /* bytes; 0: what the machine has */
   double timeout; /* seconds; 0: no limit */
   option_numbers cells;

@@ -145,6 +145,18 @@ laves_result outputs_plan_certificate(session *run, const char *source, outputs 
   return check_target(run, plan->certificate, source, true);
 }
 
+laves_result outputs_check_report(session *run, const char *source, const outputs *plan) {
+  const char *path = run->given->report;
+  if (run->given->stream)
+    return session_fail(run, LAVES_ERROR_OPTION, "a report needs the mesh in memory; leave --report away, or --stream");
+  run->json_refused = run->given->json && is_same_place(run->given->json, path); /* it must not take the place of what is there */
+  bool twice = run->json_refused || is_same_place(plan->certificate, path) ||
+               (run->given->defects && is_same_place(run->given->defects, path));
+  for (int i = 0; i < plan->count; ++i) twice = twice || is_same_place(plan->items[i].path, path);
+  if (twice) return session_fail(run, LAVES_ERROR_OPTION, "'%.200s' is named twice", path);
+  return check_target(run, path, source, true);
+}
+
 /* Of what goes beside the mesh: --defects, which may not be the input or a device, and --json. */
 laves_result outputs_check_json(session *run, const char *source) {
   const char *path = run->given->json;

@@ -33,6 +33,9 @@ COMMANDS = [
      ["out.json", "out.cert"]),
     (["view", "in.vtu", "-o", "out.png", "--size", "64x64", "--creases", "2", "--cut", "x"], ["out.png"]),
     (["info", "in.off", "--json", "out.json"], ["out.json"]),
+    # Without --surface: that thin places, or samples of an implicit solid, are missing for want of memory, the library does not tell.
+    (["report", "in.vtu", "-o", "out.html"], ["out.html"]),
+    (["report", "in.vtu", "-o", "out.html", "--whole", "1", "--json", "out.json"], ["out.html", "out.json"]),
 ]
 
 
