@@ -87,6 +87,14 @@ ENUMS = {
         "GMSH41",
         "MEDIT",
         "TETGEN",
+        "VTKHDF",
+        "VTK",
+        "XDMF",
+        "EXODUS",
+        "ABAQUS",
+        "NASTRAN",
+        "NPZ",
+        "DMTET",
         "STL",
         "OBJ",
         "PLY",
@@ -167,11 +175,19 @@ CONSTANTS = {
     "LAVES_FORMAT_GMSH41": 3,
     "LAVES_FORMAT_MEDIT": 4,
     "LAVES_FORMAT_TETGEN": 5,
-    "LAVES_FORMAT_STL": 6,
-    "LAVES_FORMAT_OBJ": 7,
-    "LAVES_FORMAT_PLY": 8,
-    "LAVES_FORMAT_OFF": 9,
-    "LAVES_FORMAT_COUNT": 10,
+    "LAVES_FORMAT_VTKHDF": 6,
+    "LAVES_FORMAT_VTK": 7,
+    "LAVES_FORMAT_XDMF": 8,
+    "LAVES_FORMAT_EXODUS": 9,
+    "LAVES_FORMAT_ABAQUS": 10,
+    "LAVES_FORMAT_NASTRAN": 11,
+    "LAVES_FORMAT_NPZ": 12,
+    "LAVES_FORMAT_DMTET": 13,
+    "LAVES_FORMAT_STL": 14,
+    "LAVES_FORMAT_OBJ": 15,
+    "LAVES_FORMAT_PLY": 16,
+    "LAVES_FORMAT_OFF": 17,
+    "LAVES_FORMAT_COUNT": 18,
 }
 
 laves_reallocate_fn = CFUNCTYPE(c_void_p, c_void_p, c_void_p, c_size_t, c_size_t)
@@ -511,6 +527,38 @@ class laves_feature_check(Structure):
     ]
 
 
+class laves_improve_options(Structure):
+    _fields_ = [
+        ("min_dihedral", c_double),
+        ("max_dihedral", c_double),
+        ("volume_length", c_double),
+        ("tolerance", c_double),
+        ("fixed_boundary", c_bool),
+        ("passes", c_size_t),
+        ("seconds", c_double),
+        ("cookie", c_uint32),
+    ]
+
+
+class laves_improve_report(Structure):
+    _fields_ = [
+        ("before", laves_check),
+        ("after", laves_check),
+        ("outside_before", c_size_t),
+        ("outside_after", c_size_t),
+        ("patches", c_size_t),
+        ("fixed_vertices", c_size_t),
+        ("crease_vertices", c_size_t),
+        ("flat_vertices", c_size_t),
+        ("sharpest", c_double),
+        ("out_of_time", c_bool),
+        ("kept_as_it_was", c_bool),
+        ("wall_seconds", c_double),
+        ("cpu_seconds", c_double),
+        ("peak_bytes", c_size_t),
+    ]
+
+
 class laves_exception(Structure):
     _fields_ = [
         ("kind", c_int),
@@ -679,6 +727,8 @@ FUNCTIONS = {
     "laves_feature_fault_text": (c_char_p, [c_int]),
     "laves_feature_options_default": (laves_feature_options, []),
     "laves_check_features": (c_int, [c_void_p, c_void_p, c_void_p, POINTER(laves_feature_options), POINTER(laves_feature_check), POINTER(laves_feature_place), c_size_t, POINTER(c_size_t), POINTER(laves_error)]),
+    "laves_improve_options_default": (laves_improve_options, []),
+    "laves_improve": (c_int, [c_void_p, c_void_p, POINTER(laves_improve_options), POINTER(c_void_p), POINTER(laves_improve_report), POINTER(laves_error)]),
     "laves_exception_key": (c_char_p, [c_int]),
     "laves_exception_text": (c_char_p, [c_int]),
     "laves_cause_key": (c_char_p, [c_int]),
