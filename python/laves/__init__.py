@@ -17,16 +17,16 @@ from ._library import lib as _lib, path_of as _path_of, program_path, text_of as
 from ._mesh import Certificate, Mesh
 from ._options import fill as _fill
 from ._quality import Quality
-from ._records import Check, DomainInfo, Expectation, FeatureCheck, FileCheck, Place, Report
+from ._records import Check, DomainInfo, Expectation, FeatureCheck, FileCheck, ImproveReport, Place, Report
 from ._session import Deadline as _Deadline, Session as _Session
 from .errors import (CancelledError, Error, InputError, InternalError, MissingFileError, OptionError, OutOfMemoryError, TargetMissed,
                      TimeoutError, WriteError)
 
 __version__: str = _lib.laves_version().decode()
 
-__all__ = ["mesh", "info", "estimate", "check", "check_file", "read", "tiling", "formats", "format_of", "solids", "Mesh",
+__all__ = ["mesh", "info", "estimate", "check", "check_file", "improve", "read", "tiling", "formats", "format_of", "solids", "Mesh",
            "Domain", "Defects", "Sizing", "Features", "Certificate", "Quality", "Check", "DomainInfo", "Expectation",
-           "FeatureCheck", "FileCheck", "Place", "Report", "Error", "OptionError", "InputError", "MissingFileError",
+           "FeatureCheck", "FileCheck", "ImproveReport", "Place", "Report", "Error", "OptionError", "InputError", "MissingFileError",
            "OutOfMemoryError", "WriteError", "CancelledError", "TimeoutError", "InternalError", "TargetMissed", "program_path",
            "__version__"]
 
@@ -105,6 +105,13 @@ def check(mesh, surface=None, *, progress=None, timeout: "float | None" = None) 
     made = mesh if isinstance(mesh, Mesh) else read(mesh, progress=progress, timeout=timeout)
     domain = surface if surface is None or isinstance(surface, Domain) else Domain(surface, progress=progress, timeout=timeout)
     return made.check(domain, progress=progress, timeout=timeout)
+
+
+def improve(mesh, *, threads: int = 0, memory: int = 0, progress=None, timeout: "float | None" = None, **options) -> Mesh:  # noqa: A002
+    """A mesh of any program with better dihedral angles and the same boundary; mesh: laves.Mesh, or a file. As laves.Mesh.improve()."""
+    timeout = _Deadline.of(timeout)
+    made = mesh if isinstance(mesh, Mesh) else read(mesh, threads=threads, memory=memory, progress=progress, timeout=timeout)
+    return made.improve(progress=progress, timeout=timeout, **options)
 
 
 def check_file(path: "str | _os.PathLike", surface: "Domain | None" = None, *, places: int = 16, threads: int = 0, memory: int = 0,

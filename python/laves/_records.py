@@ -54,6 +54,10 @@ class FileCheck(Record):
     """What checking a file by ranges finds: laves_file_check."""
 
 
+class ImproveReport(Record):
+    """What was done to improve a mesh: laves_improve_report. `before`, `after`, `outside_before`, `outside_after`, ..."""
+
+
 class FeatureCheck(Record):
     """How well a mesh keeps the creases and corners of a solid: laves_feature_check, and `places`, the worst first."""
 

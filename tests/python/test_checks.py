@@ -163,6 +163,31 @@ class Elsewhere(unittest.TestCase):
             made.write(path)
             self.assertEqual(laves.read(path).tet_count, mesh.tet_count)
 
+    def test_improve(self):
+        ball = laves.mesh("sphere(1)", size=0.3)
+        noise = np.random.default_rng(7)
+        inner = np.setdiff1d(np.arange(ball.vertex_count), ball.faces)
+        points = ball.points.copy()
+        points[inner] += noise.uniform(-0.07, 0.07, (len(inner), 3))
+        spoilt = laves.Mesh.from_arrays(points, ball.tets)
+        self.assertTrue(spoilt.check().valid)
+        better = spoilt.improve(min_dihedral=35, max_dihedral=130)
+        self.assertGreater(better.report.after.min_dihedral.min, better.report.before.min_dihedral.min + 5)
+        self.assertEqual(better.report.outside_after, 0)
+        self.assertAlmostEqual(better.check().volume, spoilt.check().volume, places=9)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "spoilt.mesh")
+            spoilt.write(path)
+            self.assertEqual(laves.improve(path, min_dihedral=35, max_dihedral=130).hash, better.hash)
+        with self.assertWarns(laves.TargetMissed):
+            kept = spoilt.improve(min_dihedral=60, max_dihedral=80, passes=1)
+        self.assertGreater(kept.report.outside_after, 0)
+        with self.assertRaisesRegex(TypeError, "min_dihedral"):
+            spoilt.improve(min_dihedrall=3)
+        points[ball.tets[0]] = points[ball.tets[0][[1, 0, 2, 3]]]  # turned over
+        with self.assertRaises(laves.InputError):
+            laves.Mesh.from_arrays(points, ball.tets).improve()
+
     def test_pyvista(self):
         mesh = laves.mesh("sphere(1)", size=0.3)
         try:
