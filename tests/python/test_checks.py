@@ -89,17 +89,27 @@ class Checks(unittest.TestCase):
 class Files(unittest.TestCase):
     def test_every_format(self):
         mesh = laves.mesh("sphere(1)", size=0.3)
+        ends = {"gmsh22": "msh", "gmsh41": "msh", "medit": "mesh", "tetgen": "ele", "abaqus": "inp", "nastran": "bdf", "exodus": "exo",
+                "dmtet": "npz"}
+        read = ("vtu", "gmsh22", "gmsh41", "medit", "tetgen", "vtk", "abaqus")
+        surfaces = ("stl", "obj", "ply", "off")
         with tempfile.TemporaryDirectory() as folder:
             for name, streams in laves.formats().items():
-                path = pathlib.Path(folder, "mesh." + {"gmsh22": "msh", "gmsh41": "msh", "medit": "mesh", "tetgen": "ele"}.get(name, name))
+                path = pathlib.Path(folder, "mesh." + ends.get(name, name))
                 for ascii_ in (False, True):
                     mesh.write(path, name, ascii=ascii_)
-                    if name in ("vtu", "gmsh22", "gmsh41", "medit", "tetgen"):
+                    if name in read:
                         again = laves.read(path)
                         np.testing.assert_array_equal(again.points, mesh.points)
                         np.testing.assert_array_equal(again.tets, mesh.tets)
-                    else:
+                    elif name in surfaces:
                         self.assertTrue(laves.info(path).closed)
+                    elif name in ("npz", "dmtet"):
+                        arrays = np.load(path)
+                        tets = next(arrays[key] for key in arrays if arrays[key].ndim == 2 and arrays[key].shape[1] == 4)
+                        np.testing.assert_array_equal(tets, mesh.tets)
+                    else:
+                        self.assertGreater(path.stat().st_size, 500)
             self.assertEqual(laves.format_of("a.mesh"), "medit")
             self.assertIsNone(laves.format_of("a.xyz"))
             with self.assertRaises(laves.Error):
