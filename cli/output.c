@@ -230,6 +230,7 @@ laves_result outputs_write(session *run, const laves_mesh *mesh, const laves_cer
   }
   if (result == LAVES_OK && certificate && plan->certificate[0]) {
     result = laves_certificate_write(run->context, certificate, plan->certificate, &run->error);
+    progress_clear(&run->bar);
     if (result == LAVES_OK) plan->certificate_bytes = file_bytes(plan->certificate);
   }
   plan->seconds = progress_now() - start;

@@ -82,6 +82,7 @@ laves_result report_write(session *run, const report_subject *subject, const cha
   result = session_settle(run, result);
   if (result == LAVES_OK) result = report_parts_make(run, subject, &shapes, (size_t)run->given->whole, &parts);
   if (result == LAVES_OK) result = save(run, subject, &shapes, &parts, path, &outcome->bytes);
+  progress_clear(&run->bar);
   outcome->whole = parts.whole;
   outcome->seconds = progress_now() - start;
   report_parts_free(&parts);

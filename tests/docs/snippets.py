@@ -5,6 +5,7 @@
 """
 import argparse
 import ast
+import doctest
 import concurrent.futures
 import os
 import pathlib
@@ -60,12 +61,12 @@ def make_input(program, folder, name):
     elif extension in (".stl", ".obj", ".ply", ".off"):
         run(program, ["laves", "mesh", SURFACES.get(name, PART), *COARSE, "-q", "--certificate", "none", "-o", ".made.vtu",
                       "--boundary", name], folder)
-    elif extension in (".vtu", ".msh", ".mesh"):
+    elif extension in (".vtu", ".msh", ".mesh", ".ele", ".inp"):
         run(program, ["laves", "mesh", PART, *COARSE, "-q", "--certificate", "none", "--compress", "0", "-o", name], folder)
 
 
 OUTPUTS = {"-o", "--output", "--boundary", "--json", "--defects", "--write-certificate", "--report"}
-FILE = re.compile(r"(?<![\w/.'-])([\w-]+\.(?:stl|obj|ply|off|vtu|msh|mesh|lua|txt|pos))(?![\w/])")
+FILE = re.compile(r"(?<![\w/.'-])([\w-]+(?:\.\d)?\.(?:stl|obj|ply|off|vtu|msh|mesh|ele|inp|lua|txt|pos))(?![\w/])")
 
 
 def inputs_of(command):
@@ -207,7 +208,11 @@ class Page:
 
     def script(self, block):
         self.count += 1
-        (self.folder / "snippet.lua").write_text("\n".join(block.lines) + "\n")
+        text = "\n".join(block.lines) + "\n"
+        (self.folder / "snippet.lua").write_text(text)
+        named = re.match(r"-- ([\w-]+\.lua)\n", text)
+        if named:  # commands that follow take it by its name
+            (self.folder / named.group(1)).write_text(text)
         words = ["laves", "mesh", "snippet.lua", *COARSE, "--features", "none"]
         if block.note("field"):
             words = ["laves", "mesh", "sphere(1)", "--size", "0.2", "--size-field", "snippet.lua"]
@@ -235,8 +240,11 @@ class Page:
 
     def python(self, block):
         self.count += 1
+        text = "\n".join(block.lines) + "\n"
         try:
-            ast.parse("\n".join(block.lines))
+            if text.startswith(">>> "):  # run by tests/python
+                text = "".join(example.source for example in doctest.DocTestParser().get_examples(text))
+            ast.parse(text)
         except SyntaxError as error:
             self.fault(block, f"the Python is wrong: {error}")
 
