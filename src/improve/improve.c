@@ -8,7 +8,10 @@
  * the octree to the next the size at most doubles, and blocks are fifteen to thirty times what lies in them.)
  *
  * First passes only smooth; when that no longer helps, contraction joins in; the few that are still clearly outside are
- * treated once more with more smoothing around each contraction. On a graded background flips join in from the first. */
+ * treated once more with more smoothing around each contraction. On a graded background flips join in from the first.
+ *
+ * Where the layer has a mask of what is fresh, only tets with such a vertex are worked on; what is known of the others is that
+ * nothing helped. */
 #include <stdlib.h>
 
 #include "improve/contract.h"
@@ -37,7 +40,6 @@ static const size_t crease_crowd_min = 500; /* tets */
  * only, and only tets far outside get a contraction. */
 static const double rough_share = 0.2;
 static const double rough_admit = 0.4;  /* quality: about 26 degrees */
-static const double rescue_slack = 1.2; /* times the quality of the angles that are rescued from */
 /* Where that is known beforehand, smoothing leaves those alone, too, that are better than this. */
 static const double brief_admit = 0.6;      /* about 32 degrees */
 static const double block_side = 15;        /* local sizes; see above */
@@ -78,6 +80,9 @@ typedef struct work {
   laves__measure measure;
   double target;
   laves__layer *layer;
+  int32_t *fresh;          /* [fresh_count] tets that are fresh at first, and dead ones, ascending; NULL: all */
+  size_t fresh_count;
+  size_t population;       /* tets, of which those that are bad are a share: all, or the fresh ones that live */
   laves__journal *journal; /* one for each worker */
   patient *item;           /* by level, then colour, then block, then quality */
   size_t count, capacity;
@@ -113,6 +118,10 @@ static bool spans_wall(const laves__layer *layer, int32_t t) {
   return true;
 }
 
+/* The tets that may be worked on: how many, and number i. */
+static size_t count_tets(const work *w) { return w->fresh ? w->fresh_count : w->layer->tet_count; }
+static int32_t tet_at(const work *w, size_t i) { return w->fresh ? w->fresh[i] : (int32_t)i; }
+
 static bool is_bad(const work *w, int32_t t) {
   if (w->layer->tet[t][0] < 0 || !(w->layer->quality[t] < w->admit)) return false;
   return !w->thin || w->layer->quality[t] < wall_admit || !spans_wall(w->layer, t);
@@ -121,7 +130,7 @@ static bool is_bad(const work *w, int32_t t) {
 /* Whether walls a tet thick are more than a place or two: contraction is dear, and there it seldom reaches the asked window. */
 static bool has_thin_walls(const work *w) {
   size_t count = 0;
-  for (size_t t = 0; t < w->layer->tet_count; t++) count += is_bad(w, (int32_t)t) && spans_wall(w->layer, (int32_t)t);
+  for (size_t i = 0; i < count_tets(w); i++) count += is_bad(w, tet_at(w, i)) && spans_wall(w->layer, tet_at(w, i));
   return count > wall_count;
 }
 
@@ -165,10 +174,11 @@ static int by_level_colour_block_quality(const void *left, const void *right) {
 /* The bad tets of the layer, in order, and where their blocks begin; false when memory is short. */
 static bool admit_all(work *w) {
   w->count = w->block_count = 0;
-  for (size_t t = 0; t < w->layer->tet_count; t++) {
-    if (!is_bad(w, (int32_t)t)) continue;
+  for (size_t i = 0; i < count_tets(w); i++) {
+    const int32_t t = tet_at(w, i);
+    if (!is_bad(w, t)) continue;
     if (!laves__grow(w->layer->context, &w->item, &w->capacity, w->count + 1, sizeof *w->item)) return false;
-    w->item[w->count++] = admit(w->layer, (int32_t)t);
+    w->item[w->count++] = admit(w->layer, t);
   }
   if (w->count) qsort(w->item, w->count, sizeof *w->item, by_level_colour_block_quality);
   for (size_t i = 0; i <= w->count; i++) {
@@ -307,16 +317,20 @@ static laves_result run_passes(work *w, int passes, int patience, laves_error *e
   return LAVES_OK;
 }
 
+/* Whether a boundary vertex that may be worked on is not where it belongs. */
+static bool is_off(const laves__layer *layer, size_t v) {
+  return layer->off_surface[v] && layer->star[v].count > 0 && (!layer->fresh || layer->fresh[v]);
+}
+
 static void settle_all(work *w, double floor) {
   for (size_t v = 0; v < w->layer->vertex_count; v++)
-    if (w->layer->off_surface[v] && w->layer->star[v].count > 0)
-      laves__settle_vertex(w->frame, &w->measure, floor, w->layer, (int32_t)v);
+    if (is_off(w->layer, v)) laves__settle_vertex(w->frame, &w->measure, floor, w->layer, (int32_t)v);
 }
 
 /* How many boundary vertices are not where they belong. */
 static size_t count_off(const work *w) {
   size_t count = 0;
-  for (size_t v = 0; v < w->layer->vertex_count; v++) count += w->layer->off_surface[v] && w->layer->star[v].count > 0;
+  for (size_t v = 0; v < w->layer->vertex_count; v++) count += is_off(w->layer, v);
   return count;
 }
 
@@ -324,25 +338,26 @@ static size_t count_off(const work *w) {
 static void peel_all(work *w) {
   for (bool again = true; again;) {
     again = false;
-    for (size_t t = 0; t < w->layer->tet_count; t++)
-      if (w->layer->tet[t][0] >= 0 && w->layer->quality[t] < peel_below && laves__peel_tet(w->frame, w->layer, (int32_t)t))
-        again = true;
+    for (size_t i = 0; i < count_tets(w); i++) {
+      const int32_t t = tet_at(w, i);
+      if (w->layer->tet[t][0] >= 0 && w->layer->quality[t] < peel_below && laves__peel_tet(w->frame, w->layer, t)) again = true;
+    }
   }
 }
 
 /* Whether the bad tets are more than `least`, and more than a share of the layer. */
 static bool is_crowded(const work *w, double share, size_t least) {
   size_t bad = 0;
-  for (size_t t = 0; t < w->layer->tet_count; t++) bad += is_bad(w, (int32_t)t);
-  return bad > least && (double)bad > share * (double)w->layer->tet_count;
+  for (size_t i = 0; i < count_tets(w); i++) bad += is_bad(w, tet_at(w, i));
+  return bad > least && (double)bad > share * (double)w->population;
 }
 
 /* Whether the bad ones are a large share of the tets that live. */
 static bool is_rough(const work *w) {
   size_t bad = 0, alive = 0;
-  for (size_t t = 0; t < w->layer->tet_count; t++) {
-    bad += is_bad(w, (int32_t)t);
-    alive += w->layer->tet[t][0] >= 0;
+  for (size_t i = 0; i < count_tets(w); i++) {
+    bad += is_bad(w, tet_at(w, i));
+    alive += w->layer->tet[tet_at(w, i)][0] >= 0;
   }
   return bad > crowd_min && (double)bad > rough_share * (double)alive;
 }
@@ -437,23 +452,8 @@ static laves_result mend_again(work *w, laves_error *error) {
   return result;
 }
 
-/* Only the worst: smoothing makes room, and contraction does the rest. */
-static laves_result rescue(work *w, const laves__window *window, laves_error *error) {
-  static const double radians = 3.14159265358979323846 / 180;
-  settle_all(w, settle_floor);
-  w->admit = rescue_slack * fmax(w->measure.low_scale * (1 - cos(window->rescue_min * radians)),
-                                 w->measure.high_scale * (1 + cos(window->rescue_max * radians)));
-  w->admit = fmin(w->admit, 1);
-  laves_result result = run_passes(w, SMOOTH_PASSES, 1, error);
-  w->rounds = THOROUGH_ROUNDS;
-  if (result == LAVES_OK) result = run_passes(w, CONTRACT_PASSES, 2, error);
-  if (result == LAVES_OK) peel_all(w);
-  return result;
-}
-
 /* The schedule for what the layer is. */
 static laves_result mend_all(work *w, const laves__window *window, laves_error *error) {
-  if (window->rescue_min > 0) return rescue(w, window, error);
   if (window->again) return mend_again(w, error);
   const laves_result result = w->layer->hold ? bring_home(w, error) : LAVES_OK;
   if (result != LAVES_OK) return result;
@@ -467,16 +467,48 @@ static bool short_of_memory(const work *w, int workers) {
   return false;
 }
 
+/* Tets that live and are fresh; where all are, dead ones count, too. */
+static size_t count_population(const laves__layer *layer) {
+  size_t count = 0;
+  if (!layer->fresh) return layer->tet_count;
+  for (size_t t = 0; t < layer->tet_count; t++) count += layer->tet[t][0] >= 0 && laves__layer_is_fresh(layer, (int32_t)t);
+  return count;
+}
+
+static size_t count_fresh_vertices(const laves__layer *layer) {
+  size_t count = 0;
+  for (size_t v = 0; v < layer->vertex_count; v++) count += !layer->fresh || layer->fresh[v];
+  return count;
+}
+
+static bool may_be_worked_on(const laves__layer *layer, size_t t) {
+  return layer->tet[t][0] < 0 || laves__layer_is_fresh(layer, (int32_t)t);
+}
+
+/* Lists what is fresh; false when memory is short. */
+static bool list_fresh(work *w) {
+  const laves__layer *layer = w->layer;
+  if (!layer->fresh) return true;
+  for (size_t t = 0; t < layer->tet_count; t++) w->fresh_count += may_be_worked_on(layer, t);
+  w->fresh = laves__alloc(layer->context, w->fresh_count, sizeof *w->fresh);
+  if (!w->fresh) return false;
+  for (size_t t = 0, next = 0; t < layer->tet_count; t++)
+    if (may_be_worked_on(layer, t)) w->fresh[next++] = (int32_t)t;
+  return true;
+}
+
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {
   laves_context *context = layer->context;
   work w = {
       .frame = frame, .measure = laves__measure_of(window), .target = 1, .admit = 1, .worthwhile = worthwhile, .layer = layer};
+  w.population = count_population(layer);
   leave_out_sharp(&w, window);
   const int workers = laves__workers(context);
   laves_result result = LAVES_OK;
   const bool flips = layer->scale || layer->hold;
-  if (flips && !laves__layer_extend(layer, layer->tet_count / spare_share + spare_min)) return laves__fail_memory(context, error);
-  const size_t extra = layer->hold ? layer->vertex_count / spare_vertex_share + spare_vertex_min : 0;
+  if (flips && !laves__layer_extend(layer, w.population / spare_share + spare_min)) return laves__fail_memory(context, error);
+  if (!layer->fresh) w.population = layer->tet_count; /* the spare ones, too */
+  const size_t extra = layer->hold ? count_fresh_vertices(layer) / spare_vertex_share + spare_vertex_min : 0;
   w.first_spare_vertex = layer->vertex_count;
   if (extra && !laves__layer_extend_vertices(layer, extra)) return laves__fail_memory(context, error);
   if (extra) w.spare_vertex = laves__alloc(context, extra, sizeof *w.spare_vertex);
@@ -485,14 +517,15 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   w.given_up = laves__alloc(context, layer->tet_count, sizeof *w.given_up);
   w.stuck = laves__alloc(context, layer->tet_count, sizeof *w.stuck);
   w.tries = laves__alloc_zeroed(context, layer->tet_count, 1);
-  if (!w.journal || !w.given_up || !w.stuck || !w.tries || (flips && !w.spare) || (extra && !w.spare_vertex)) {
+  if (!w.journal || !w.given_up || !w.stuck || !w.tries || (flips && !w.spare) || (extra && !w.spare_vertex) ||
+      !list_fresh(&w)) {
     result = laves__fail_memory(context, error);
     goto cleanup;
   }
   for (size_t t = 0; t < layer->tet_count; t++) w.given_up[t] = w.stuck[t] = HUGE_VAL;
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
   if (!laves__parallel_for(context, NULL, layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
-  if (result == LAVES_OK && !window->again && window->rescue_min == 0)
+  if (result == LAVES_OK && !window->again)
     result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
   if (result == LAVES_OK) result = mend_all(&w, window, error);
   if (result == LAVES_OK) settle_all(&w, settle_floor);
@@ -501,6 +534,7 @@ cleanup:
   for (int i = 0; w.journal && i < workers; i++) laves__journal_free(&w.journal[i]);
   laves__free(context, w.spare_vertex, extra, sizeof *w.spare_vertex);
   laves__free(context, w.spare, layer->tet_count, sizeof *w.spare);
+  laves__free(context, w.fresh, w.fresh_count, sizeof *w.fresh);
   laves__free(context, w.tries, layer->tet_count, 1);
   laves__free(context, w.stuck, layer->tet_count, sizeof *w.stuck);
   laves__free(context, w.given_up, layer->tet_count, sizeof *w.given_up);

@@ -25,11 +25,10 @@ typedef struct laves__window {
   double volume_length;              /* 0: not asked */
   double held_min, held_max;         /* all tets are inside these angles and stay so; 0 and 180: nothing is held */
   bool again;                        /* after a first time: without the Laplace start */
-  double rescue_min, rescue_max;     /* with all patience, but only what is outside these, or nearly; 0 and 180: all */
   bool brief;                        /* the solid is rougher than the size: few passes, and only the worst get more */
 } laves__window;
 
-/* Improves the layer until every tet is inside the window, or no operation helps.
+/* Improves the layer, or what of it is fresh, until every tet is inside the window, or no operation helps.
  * Promise: the worst quality never falls; vertices on the surface stay on it; vertices deeper than LAVES__DEPTH_MOVES stay
  * where they are; tets stay positive (by an exact test); the boundary stays a manifold of the same topology.
  * The result does not depend on the number of threads.

@@ -40,6 +40,7 @@ static void find_places(void *user, size_t begin, size_t end, int worker) {
     place *p = &s->other[v];
     p->moved = false;
     const laves__hold hold = laves__layer_hold(layer, (int32_t)v);
+    if (layer->fresh && !layer->fresh[v]) continue;
     if (layer->depth[v] != 0 || layer->off_surface[v] || hold.kind == LAVES__HOLD_CORNER) continue;
     const laves__star *star = &layer->star[v];
     laves__vec3 sum = {0, 0, 0};
