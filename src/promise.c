@@ -84,7 +84,7 @@ static const double crowded = 0.001;
 static laves_result improve(laves__run *r, bool again) {
   if (!r->options->improve) return LAVES_OK;
   laves__stage_begin(r);
-  const bool held = r->guarantee && laves__count_broken(r->guarantee, &r->layer, NULL) == 0;
+  const bool held = r->guarantee && !laves__is_broken(r->guarantee, &r->layer);
   const laves__window aim = {.min_dihedral = r->options->min_dihedral + 1.5,
                              .max_dihedral = fmin(r->options->max_dihedral - 3, 179),
                              .volume_length = r->options->volume_length > 0 ? r->options->volume_length + 0.05 : 0,
@@ -162,9 +162,9 @@ static bool zone_everything_near(laves__run *r, laves__known_lattice *known) {
 /* Adds to the zone that is stuffed: what is around the broken tets; in later rounds a wider neighbourhood, then all of the layer
  * that hangs together with them, in the end all of the solid that does, where the window is proved. What must be made anew is what
  * differs from `known`. False when memory is short. */
-static bool widen_zone(laves__run *r, int round, laves__known_lattice *known) {
+static bool widen_zone(laves__run *r, int round, size_t broken, laves__known_lattice *known) {
   enum { WALLS = 5, ALL = 9 }; /* the first rounds of those kinds */
-  const bool crowd = (double)count_broken(r) > crowded * (double)r->layer.tet_count;
+  const bool crowd = (double)broken > crowded * (double)r->layer.tet_count;
   if (!laves__known_take(&r->lattice, known) || (round >= WALLS && !zone_broken_walls(r))) return false;
   laves__zone_around(r->guarantee, &r->layer, r->forced, round == 0 ? 1 : 3, &r->lattice, known);
   return !(crowd || round >= ALL) || zone_everything_near(r, known);
@@ -204,10 +204,13 @@ static laves_result mend_promise(laves__run *r) {
   enum { ROUNDS = 11 };
   laves__known_lattice known = {0};
   laves_result result = find_forced(r);
-  for (int round = 0; result == LAVES_OK && round < ROUNDS && count_broken(r) > 0; round++) {
-    if (laves__is_cancelled(r->context)) break;
-    if (getenv("LAVES_DEBUG")) fprintf(stderr, "round %d: broken %zu of %zu\n", round, count_broken(r), r->layer.tet_count);
-    result = widen_zone(r, round, &known) ? mend_zone(r, &known) : laves__fail_memory(r->context, r->error);
+  size_t broken = result == LAVES_OK ? count_broken(r) : 0;
+  if (laves__is_cancelled(r->context)) result = laves__fail_cancelled(r->error);
+  for (int round = 0; result == LAVES_OK && round < ROUNDS && broken > 0; round++) {
+    if (getenv("LAVES_DEBUG")) fprintf(stderr, "round %d: broken %zu of %zu\n", round, broken, r->layer.tet_count);
+    result = widen_zone(r, round, broken, &known) ? mend_zone(r, &known) : laves__fail_memory(r->context, r->error);
+    if (result == LAVES_OK) broken = count_broken(r);
+    if (laves__is_cancelled(r->context)) result = laves__fail_cancelled(r->error);
   }
   laves__known_free(&known);
   if (result == LAVES_OK && r->forced) r->report->forced_tets = laves__count_broken(r->guarantee, &r->layer, NULL);

@@ -83,6 +83,7 @@ typedef struct work {
   int32_t *fresh;          /* [fresh_count] tets that are fresh at first, and dead ones, ascending; NULL: all */
   size_t fresh_count;
   size_t population;       /* tets, of which those that are bad are a share: all, or the fresh ones that live */
+  double part;             /* of the layer that is fresh: what is a crowd in all of it is one by that part of the count */
   laves__journal *journal; /* one for each worker */
   patient *item;           /* by level, then colour, then block, then quality */
   size_t count, capacity;
@@ -103,10 +104,14 @@ typedef struct work {
   int rounds;        /* of smoothing around a contraction; 0: smoothing only */
 } work;
 
+/* What is not fresh keeps the quality that it was left with. */
 static void measure_all(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const work *w = user;
-  laves__measure_tets(&w->measure, w->layer, begin, end, w->layer->quality + begin);
+  if (!w->fresh) laves__measure_tets(&w->measure, w->layer, begin, end, w->layer->quality + begin);
+  for (size_t i = begin; w->fresh && i < end; i++)
+    if (w->layer->tet[w->fresh[i]][0] >= 0)
+      w->layer->quality[w->fresh[i]] = laves__layer_quality(&w->measure, w->layer, w->fresh[i]);
 }
 
 /* Whether a tet is the whole of a wall: all its corners are on the surface, none of them at a crease. */
@@ -131,7 +136,7 @@ static bool is_bad(const work *w, int32_t t) {
 static bool has_thin_walls(const work *w) {
   size_t count = 0;
   for (size_t i = 0; i < count_tets(w); i++) count += is_bad(w, tet_at(w, i)) && spans_wall(w->layer, tet_at(w, i));
-  return count > wall_count;
+  return (double)count > w->part * (double)wall_count;
 }
 
 /* The least power of two that no size at the corners of a tet exceeds. */
@@ -259,8 +264,8 @@ static laves__spare vertices_of(const work *w, size_t block) {
 /* Lists the dead tets and vertices anew. */
 static void collect_spare(work *w) {
   w->spare_count = 0;
-  for (size_t t = 0; w->spare && t < w->layer->tet_count; t++)
-    if (w->layer->tet[t][0] < 0) w->spare[w->spare_count++] = (int32_t)t;
+  for (size_t i = 0; w->spare && i < count_tets(w); i++)
+    if (w->layer->tet[tet_at(w, i)][0] < 0) w->spare[w->spare_count++] = tet_at(w, i);
   w->spare_vertex_count = 0;
   for (size_t v = w->first_spare_vertex; w->spare_vertex && v < w->layer->vertex_count; v++)
     if (w->layer->star[v].count == 0) w->spare_vertex[w->spare_vertex_count++] = (int32_t)v;
@@ -349,7 +354,7 @@ static void peel_all(work *w) {
 static bool is_crowded(const work *w, double share, size_t least) {
   size_t bad = 0;
   for (size_t i = 0; i < count_tets(w); i++) bad += is_bad(w, tet_at(w, i));
-  return bad > least && (double)bad > share * (double)w->population;
+  return (double)bad > w->part * (double)least && (double)bad > share * (double)w->population;
 }
 
 /* Whether the bad ones are a large share of the tets that live. */
@@ -359,7 +364,7 @@ static bool is_rough(const work *w) {
     bad += is_bad(w, tet_at(w, i));
     alive += w->layer->tet[tet_at(w, i)][0] >= 0;
   }
-  return bad > crowd_min && (double)bad > rough_share * (double)alive;
+  return (double)bad > w->part * (double)crowd_min && (double)bad > rough_share * (double)alive;
 }
 
 /* Patience is new for all that remains. */
@@ -502,6 +507,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   work w = {
       .frame = frame, .measure = laves__measure_of(window), .target = 1, .admit = 1, .worthwhile = worthwhile, .layer = layer};
   w.population = count_population(layer);
+  w.part = (double)w.population / fmax((double)layer->tet_count, 1);
   leave_out_sharp(&w, window);
   const int workers = laves__workers(context);
   laves_result result = LAVES_OK;
@@ -524,7 +530,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   }
   for (size_t t = 0; t < layer->tet_count; t++) w.given_up[t] = w.stuck[t] = HUGE_VAL;
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
-  if (!laves__parallel_for(context, NULL, layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
+  if (!laves__parallel_for(context, NULL, count_tets(&w), 1024, measure_all, &w)) result = laves__fail_cancelled(error);
   if (result == LAVES_OK && !window->again)
     result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
   if (result == LAVES_OK) result = mend_all(&w, window, error);

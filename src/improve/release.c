@@ -25,7 +25,7 @@ size_t laves__mark_forced(const laves__frame *frame, double sharper_than, const 
 }
 
 static bool shall_go(const laves__layer *layer, int32_t v, laves__release what) {
-  if (layer->depth[v] != 0) return false;
+  if (layer->depth[v] != 0 || (layer->fresh && !layer->fresh[v])) return false;
   const uint8_t kind = layer->hold[v].kind;
   if (kind < LAVES__HOLD_CREASE) return false;
   if (what == LAVES__RELEASE_OFF) return layer->off_surface[v];

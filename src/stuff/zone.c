@@ -50,6 +50,14 @@ size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer
   return broken + count_broken_of(&batch, count, &promised);
 }
 
+bool laves__is_broken(const laves__guarantee *guarantee, const laves__layer *layer) {
+  const laves__guarantee promised = promised_window(guarantee);
+  if (!layer->fresh) return laves__count_broken(guarantee, layer, NULL) > 0;
+  for (size_t t = 0; t < layer->tet_count; t++)
+    if (layer->tet[t][0] >= 0 && laves__layer_is_fresh(layer, (int32_t)t) && is_broken(layer, t, &promised)) return true;
+  return false;
+}
+
 static void zone_cells(laves__lattice *lattice, laves__known_lattice *known, laves__vec3 centre, int reach) {
   const int32_t x = (int32_t)floor(centre.x / LAVES__CELL_SIDE), y = (int32_t)floor(centre.y / LAVES__CELL_SIDE),
                 z = (int32_t)floor(centre.z / LAVES__CELL_SIDE);

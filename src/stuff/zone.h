@@ -12,6 +12,9 @@
  * whose angles the input fixes, which do not count; NULL: none. */
 size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced);
 
+/* Whether a fresh tet is, forced or not. */
+bool laves__is_broken(const laves__guarantee *guarantee, const laves__layer *layer);
+
 /* Puts in the zone all sites of the cells within `reach` cells of each tet outside the promised window; `known` forgets them, for
  * what is there must be made anew though it was in the zone before. */
 void laves__zone_around(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced, int reach,
