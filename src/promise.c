@@ -2,9 +2,6 @@
  *
  *     features -> improve -> (let go of features that cost too much -> improve)
  *     and where the promise is broken: stuff around the place -> features beyond it -> graft -> improve, in growing zones */
-#include <stdio.h>
-#include <stdlib.h>
-#include <time.h>
 #include "improve/release.h"
 #include "mesh/components.h"
 #include "run.h"
@@ -95,7 +92,6 @@ static laves_result improve(laves__run *r, bool again) {
   const laves_result result =
       laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : laves__improve(&r->frame, &aim, &r->layer, r->error);
   laves__stage_end(r, "improve");
-    if (getenv("LAVES_DEBUG")) fprintf(stderr, "improved again %d held %d: cpu now %.2f\n", again, held, (double)clock() / CLOCKS_PER_SEC);
   return result;
 }
 
@@ -207,7 +203,6 @@ static laves_result mend_promise(laves__run *r) {
   size_t broken = result == LAVES_OK ? count_broken(r) : 0;
   if (laves__is_cancelled(r->context)) result = laves__fail_cancelled(r->error);
   for (int round = 0; result == LAVES_OK && round < ROUNDS && broken > 0; round++) {
-    if (getenv("LAVES_DEBUG")) fprintf(stderr, "round %d: broken %zu of %zu\n", round, broken, r->layer.tet_count);
     result = widen_zone(r, round, broken, &known) ? mend_zone(r, &known) : laves__fail_memory(r->context, r->error);
     if (result == LAVES_OK) broken = count_broken(r);
     if (laves__is_cancelled(r->context)) result = laves__fail_cancelled(r->error);

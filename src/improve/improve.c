@@ -83,7 +83,6 @@ typedef struct work {
   int32_t *fresh;          /* [fresh_count] tets that are fresh at first, and dead ones, ascending; NULL: all */
   size_t fresh_count;
   size_t population;       /* tets, of which those that are bad are a share: all, or the fresh ones that live */
-  double part;             /* of the layer that is fresh: what is a crowd in all of it is one by that part of the count */
   laves__journal *journal; /* one for each worker */
   patient *item;           /* by level, then colour, then block, then quality */
   size_t count, capacity;
@@ -136,7 +135,7 @@ static bool is_bad(const work *w, int32_t t) {
 static bool has_thin_walls(const work *w) {
   size_t count = 0;
   for (size_t i = 0; i < count_tets(w); i++) count += is_bad(w, tet_at(w, i)) && spans_wall(w->layer, tet_at(w, i));
-  return (double)count > w->part * (double)wall_count;
+  return count > wall_count;
 }
 
 /* The least power of two that no size at the corners of a tet exceeds. */
@@ -354,7 +353,7 @@ static void peel_all(work *w) {
 static bool is_crowded(const work *w, double share, size_t least) {
   size_t bad = 0;
   for (size_t i = 0; i < count_tets(w); i++) bad += is_bad(w, tet_at(w, i));
-  return (double)bad > w->part * (double)least && (double)bad > share * (double)w->population;
+  return bad > least && (double)bad > share * (double)w->population;
 }
 
 /* Whether the bad ones are a large share of the tets that live. */
@@ -364,7 +363,7 @@ static bool is_rough(const work *w) {
     bad += is_bad(w, tet_at(w, i));
     alive += w->layer->tet[tet_at(w, i)][0] >= 0;
   }
-  return (double)bad > w->part * (double)crowd_min && (double)bad > rough_share * (double)alive;
+  return bad > crowd_min && (double)bad > rough_share * (double)alive;
 }
 
 /* Patience is new for all that remains. */
@@ -507,7 +506,6 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   work w = {
       .frame = frame, .measure = laves__measure_of(window), .target = 1, .admit = 1, .worthwhile = worthwhile, .layer = layer};
   w.population = count_population(layer);
-  w.part = (double)w.population / fmax((double)layer->tet_count, 1);
   leave_out_sharp(&w, window);
   const int workers = laves__workers(context);
   laves_result result = LAVES_OK;

@@ -1,7 +1,6 @@
 /* Which part of the layer is made anew, and how both parts become one layer; graft.h tells the idea. */
 #include "stuff/graft.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -415,7 +414,6 @@ static laves_result search(graft *g, bool *fits, laves_error *error) {
     g->grown = g->too_far = false;
     if (!list_faces(g, 0) || !list_faces(g, 1)) return laves__fail_memory(g->context, error);
     draw_differences(g);
-    if (getenv("LAVES_DEBUG")) { size_t n = 0; for (size_t t = 0; t < g->made.count; t++) n += count_near(&g->made, g->made.tet[t]) > 0; fprintf(stderr, "  graft rings %d try %d: wide %zu near tets %zu faces %zu %zu grown %d far %d\n", g->rings, g->tries, g->made.count, n, g->face_count[0], g->face_count[1], g->grown, g->too_far); }
     if (!g->grown && !g->too_far) draw_misfits(g);
     if (!g->grown && !g->too_far) draw_corners(g);
     if (!g->grown && !g->too_far) draw_pinches(g);
