@@ -156,8 +156,8 @@ static bool zone_everything_near(laves__run *r, laves__known_lattice *known) {
 }
 
 /* Adds to the zone that is stuffed: what is around the broken tets; in later rounds a wider neighbourhood, then all of the layer
- * that hangs together with them, in the end all of the solid that does, where the window is proved. What must be made anew is what
- * differs from `known`. False when memory is short. */
+ * that hangs together with them, in the end all of the solid that does, where the window is proved. What must be made anew is
+ * what differs from `known`. False when memory is short. */
 static bool widen_zone(laves__run *r, int round, size_t broken, laves__known_lattice *known) {
   enum { WALLS = 5, ALL = 9 }; /* the first rounds of those kinds */
   const bool crowd = (double)broken > crowded * (double)r->layer.tet_count;

@@ -39,7 +39,7 @@ static const size_t crease_crowd_min = 500; /* tets */
 /* Where even more than this share is bad after one pass, the solid is noise at this size: smoothing goes on for one more pass
  * only, and only tets far outside get a contraction. */
 static const double rough_share = 0.2;
-static const double rough_admit = 0.4;  /* quality: about 26 degrees */
+static const double rough_admit = 0.4; /* quality: about 26 degrees */
 /* Where that is known beforehand, smoothing leaves those alone, too, that are better than this. */
 static const double brief_admit = 0.6;      /* about 32 degrees */
 static const double block_side = 15;        /* local sizes; see above */
@@ -80,7 +80,7 @@ typedef struct work {
   laves__measure measure;
   double target;
   laves__layer *layer;
-  int32_t *fresh;          /* [fresh_count] tets that are fresh at first, and dead ones, ascending; NULL: all */
+  int32_t *fresh; /* [fresh_count] tets that are fresh at first, and dead ones, ascending; NULL: all */
   size_t fresh_count;
   size_t population;       /* tets, of which those that are bad are a share: all, or the fresh ones that live */
   laves__journal *journal; /* one for each worker */
@@ -521,16 +521,14 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   w.given_up = laves__alloc(context, layer->tet_count, sizeof *w.given_up);
   w.stuck = laves__alloc(context, layer->tet_count, sizeof *w.stuck);
   w.tries = laves__alloc_zeroed(context, layer->tet_count, 1);
-  if (!w.journal || !w.given_up || !w.stuck || !w.tries || (flips && !w.spare) || (extra && !w.spare_vertex) ||
-      !list_fresh(&w)) {
+  if (!w.journal || !w.given_up || !w.stuck || !w.tries || (flips && !w.spare) || (extra && !w.spare_vertex) || !list_fresh(&w)) {
     result = laves__fail_memory(context, error);
     goto cleanup;
   }
   for (size_t t = 0; t < layer->tet_count; t++) w.given_up[t] = w.stuck[t] = HUGE_VAL;
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
   if (!laves__parallel_for(context, NULL, count_tets(&w), 1024, measure_all, &w)) result = laves__fail_cancelled(error);
-  if (result == LAVES_OK && !window->again)
-    result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
+  if (result == LAVES_OK && !window->again) result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
   if (result == LAVES_OK) result = mend_all(&w, window, error);
   if (result == LAVES_OK) settle_all(&w, settle_floor);
   if (result == LAVES_OK && short_of_memory(&w, workers)) result = laves__fail_memory(context, error);

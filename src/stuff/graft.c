@@ -8,11 +8,11 @@
 #include "mesh/mesh.h"
 
 enum {
-  NEAR_RINGS = 3,  /* cells around a change that are near: with two, a site's depth beyond them is what it was */
-  WIDE_RINGS = 6,  /* cells within which the near part may grow at first, where it is cheap; then within the next, then anywhere */
+  NEAR_RINGS = 3, /* cells around a change that are near: with two, a site's depth beyond them is what it was */
+  WIDE_RINGS = 6, /* cells within which the near part may grow at first, where it is cheap; then within the next, then anywhere */
   WIDER_RINGS = 20,
   FAR = UINT8_MAX, /* further than that */
-  TRIES = 40,      /* how often it grows */
+  TRIES = 100,     /* how often it grows */
   HOLD_TRIES = 20, /* how often for the sake of what holds vertices: where features crowd, that may not end */
 };
 
@@ -282,7 +282,9 @@ static void draw_differences(graft *g) {
 
 /* ---- vertices on the border ---- */
 
-static bool same_hold(laves__hold a, laves__hold b) { return a.kind == b.kind && (a.kind == LAVES__HOLD_SURFACE || a.id == b.id); }
+static bool same_hold(laves__hold a, laves__hold b) {
+  return a.kind == b.kind && (a.kind == LAVES__HOLD_SURFACE || a.id == b.id);
+}
 
 /* Far vertices must be what they are in the lattice as it is now: so the layer's rim towards the interior is the lattice's. */
 static void draw_misfits(graft *g) {
@@ -347,7 +349,9 @@ static bool add_link(const graft *g, const side *s, int32_t v, vertex_link *l) {
   return true;
 }
 
-static bool has_corner(const uint32_t corner[3], uint32_t key) { return corner[0] == key || corner[1] == key || corner[2] == key; }
+static bool has_corner(const uint32_t corner[3], uint32_t key) {
+  return corner[0] == key || corner[1] == key || corner[2] == key;
+}
 
 /* How many other triangles share the edge opposite a corner; those that are connected are marked with the triangle's own mark. */
 static int meet(const vertex_link *l, int t, int k, bool *reached, bool *more) {
@@ -560,11 +564,8 @@ static laves_result join(const graft *g, const laves__layer *taken, laves__layer
 
 laves_result laves__graft(const laves__known_lattice *known, laves__lattice *lattice, laves__layer *made, laves__layer *improved,
                           bool *done, laves_error *error) {
-  graft g = {.context = lattice->context,
-             .known = known,
-             .lattice = lattice,
-             .old = {.layer = improved},
-             .made = {.layer = made}};
+  graft g = {
+      .context = lattice->context, .known = known, .lattice = lattice, .old = {.layer = improved}, .made = {.layer = made}};
   laves__layer taken = {0}, both = {0};
   laves_result result = LAVES_OK;
   *done = false;

@@ -35,13 +35,11 @@ void laves__known_free(laves__known_lattice *known);
 /* The record counts as changed from now on. A number beyond what is known is allowed. */
 void laves__known_forget(laves__known_lattice *known, size_t record);
 
-/* Puts what is near a change in the place of what was there: `improved` becomes the layer of the lattice as it is now, and its mask
- * `fresh` tells which vertices came from `made`, the layer just made of the lattice.
- * known: the lattice when `improved` was made. *done: false: the two do not fit together, and all is as it was; else `made` is
- * freed.
- * Promise: tets stay positive (by an exact test), the boundary stays a manifold, tets without a fresh vertex are those of
- * `improved`, and their vertices stand where they did.
- * LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
+/* Puts what is near a change in the place of what was there: `improved` becomes the layer of the lattice as it is now, and its
+ * mask `fresh` tells which vertices came from `made`, the layer just made of the lattice. known: the lattice when `improved` was
+ * made. *done: false: the two do not fit together, and all is as it was; else `made` is freed. Promise: tets stay positive (by an
+ * exact test), the boundary stays a manifold, tets without a fresh vertex are those of `improved`, and their vertices stand where
+ * they did. LAVES_ERROR_MEMORY, LAVES_ERROR_CANCELLED. */
 laves_result laves__graft(const laves__known_lattice *known, laves__lattice *lattice, laves__layer *made, laves__layer *improved,
                           bool *done, laves_error *error);
 

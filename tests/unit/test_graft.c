@@ -30,8 +30,8 @@ static size_t zone_spot(laves__lattice *lattice, laves__vec3 place, double reach
   size_t count = 0;
   for (size_t i = 0; i < lattice->record_count; i++) {
     laves__record *r = &lattice->record[i];
-    const laves__vec3 centre = v3((r->xyz[0] + 0.5) * LAVES__CELL_SIDE, (r->xyz[1] + 0.5) * LAVES__CELL_SIDE,
-                                  (r->xyz[2] + 0.5) * LAVES__CELL_SIDE);
+    const laves__vec3 centre =
+        v3((r->xyz[0] + 0.5) * LAVES__CELL_SIDE, (r->xyz[1] + 0.5) * LAVES__CELL_SIDE, (r->xyz[2] + 0.5) * LAVES__CELL_SIDE);
     if (v3_distance(centre, place) > reach) continue;
     r->zone = (UINT32_C(1) << LAVES__C15_SITES) - 1;
     count++;
