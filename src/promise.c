@@ -1,12 +1,11 @@
 /* The boundary layer held to features, improved, and inside the promised window.
  *
  *     features -> improve -> (let go of features that cost too much -> improve)
- *     and where the promise is broken: stuff around the place -> features beyond it -> improve, in growing zones */
-#include <string.h>
-
+ *     and where the promise is broken: stuff around the place -> features beyond it -> graft -> improve, in growing zones */
 #include "improve/release.h"
 #include "mesh/components.h"
 #include "run.h"
+#include "stuff/graft.h"
 #include "stuff/zone.h"
 
 /* The smallest size at the boundary. */
@@ -77,27 +76,18 @@ static const double held_slack = 0.005;
 /* Where more than this share of the layer breaks the promise, small repairs are not tried. */
 static const double crowded = 0.001;
 
-/* What improvement is for. */
-typedef enum purpose {
-  ALL_OF_IT, /* the first time */
-  AGAIN,     /* after features were let go of */
-  RESCUE,    /* only what is outside the promised window */
-} purpose;
-
-/* Improvement aims a little inside the asked window, so that the last digits of its iterations do not matter. */
-static laves_result improve(laves__run *r, purpose why) {
+/* Improvement aims a little inside the asked window, so that the last digits of its iterations do not matter. `again`: after
+ * features were let go of. */
+static laves_result improve(laves__run *r, bool again) {
   if (!r->options->improve) return LAVES_OK;
   laves__stage_begin(r);
-  const bool rescues = why == RESCUE && r->guarantee;
-  const bool held = r->guarantee && laves__count_broken(r->guarantee, &r->layer, NULL) == 0;
+  const bool held = r->guarantee && !laves__is_broken(r->guarantee, &r->layer);
   const laves__window aim = {.min_dihedral = r->options->min_dihedral + 1.5,
                              .max_dihedral = fmin(r->options->max_dihedral - 3, 179),
                              .volume_length = r->options->volume_length > 0 ? r->options->volume_length + 0.05 : 0,
                              .held_min = held ? r->guarantee->min_dihedral + held_slack : 0,
                              .held_max = held ? r->guarantee->max_dihedral - held_slack : 180,
-                             .again = why == AGAIN,
-                             .rescue_min = rescues ? r->guarantee->min_dihedral : 0,
-                             .rescue_max = rescues ? r->guarantee->max_dihedral : 180,
+                             .again = again,
                              .brief = r->rough};
   const laves_result result =
       laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : laves__improve(&r->frame, &aim, &r->layer, r->error);
@@ -113,13 +103,13 @@ static laves_result release_features(laves__run *r) {
     const size_t released = laves__release_features(&r->frame, &feature_window, what, &r->layer);
     if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
     r->released += released;
-    if (released > 0) result = improve(r, AGAIN);
+    if (released > 0) result = improve(r, true);
   }
   return result;
 }
 
 static laves_result improve_layer(laves__run *r) {
-  const laves_result result = improve(r, ALL_OF_IT);
+  const laves_result result = improve(r, false);
   return result == LAVES_OK && r->frame.features ? release_features(r) : result;
 }
 
@@ -139,156 +129,95 @@ static laves_result find_forced(laves__run *r) {
   return LAVES_OK;
 }
 
-/* Only what is outside the promised window is improved, and features are let go of only there. */
-static laves_result rescue(laves__run *r) {
-  const laves__window promised = {.min_dihedral = r->guarantee->min_dihedral, .max_dihedral = r->guarantee->max_dihedral};
-  laves_result result = improve(r, RESCUE);
-  for (int what = LAVES__RELEASE_OFF; what < LAVES__RELEASES && result == LAVES_OK && r->frame.features; what++) {
-    const size_t released = laves__release_features(&r->frame, &promised, what, &r->layer);
-    if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
-    r->released += released;
-    if (released > 0) result = improve(r, RESCUE);
-  }
-  return result;
-}
-
 /* Tets that break the promise. */
 static size_t count_broken(const laves__run *r) { return laves__count_broken(r->guarantee, &r->layer, r->forced); }
 
-/* Adds to the zone that is stuffed: what is around the broken tets; in later rounds a wider neighbourhood, then all of the layer
- * that hangs together with them, in the end all of the solid that does, where the window is proved. */
-static bool widen_zone(laves__run *r, const laves__components *now, int round) {
-  enum { WALLS = 2, ALL = 6 }; /* the first rounds of those kinds */
-  const bool crowd = (double)count_broken(r) > crowded * (double)r->layer.tet_count;
-  if (round >= WALLS) {
-    bool *broken_wall = laves__alloc(r->context, now->count, sizeof *broken_wall);
-    if (!broken_wall) return false;
-    laves__find_broken_walls(r->guarantee, &r->layer, r->forced, now, broken_wall);
-    laves__zone_walls(&r->layer, now, broken_wall, &r->lattice);
-    laves__free(r->context, broken_wall, now->count, sizeof *broken_wall);
+/* The walls in which the promise is broken, whole; false when memory is short. */
+static bool zone_broken_walls(laves__run *r) {
+  laves__components walls;
+  bool memory = laves__components_find(&r->layer, &walls);
+  bool *broken = memory ? laves__alloc(r->context, walls.count, sizeof *broken) : NULL;
+  memory = broken != NULL;
+  if (memory) {
+    laves__find_broken_walls(r->guarantee, &r->layer, r->forced, &walls, broken);
+    laves__zone_walls(&r->layer, &walls, broken, &r->lattice);
   }
-  laves__zone_around(r->guarantee, &r->layer, r->forced, round == 0 ? 1 : 3, &r->lattice);
-  return !(crowd || round >= ALL) || laves__zone_components(&r->lattice);
+  laves__free(r->context, broken, walls.count, sizeof *broken);
+  laves__components_free(&walls);
+  return memory;
 }
 
-/* What is mended: the layer as it was improved last, its components before that, and those of what takes its place. */
-typedef struct mending {
-  laves__layer improved;
-  laves__components *before, now;
-  bool *again; /* [before->count] components that do not come back as they are */
-  laves__twins twins;
-  bool complete; /* what was made anew is improved as far as it can be */
-} mending;
+/* All of the solid that hangs together with the zone is made anew; false when memory is short. */
+static bool zone_everything_near(laves__run *r, laves__known_lattice *known) {
+  if (!laves__zone_components(&r->lattice)) return false;
+  for (size_t i = 0; i < r->lattice.record_count; i++)
+    if (r->lattice.record[i].zone) laves__known_forget(known, i);
+  return true;
+}
 
-/* The boundary made anew by stuffing in the lattice's zone, held to features, without the components that come back. */
-static laves_result make_zone(laves__run *r, mending *m) {
-  laves__layer_free(&r->layer);
-  laves__components_free(&m->now);
-  laves__twins_free(&m->twins);
+/* Adds to the zone that is stuffed: what is around the broken tets; in later rounds a wider neighbourhood, then all of the layer
+ * that hangs together with them, in the end all of the solid that does, where the window is proved. What must be made anew is
+ * what differs from `known`. False when memory is short. */
+static bool widen_zone(laves__run *r, int round, size_t broken, laves__known_lattice *known) {
+  enum { WALLS = 5, ALL = 9 }; /* the first rounds of those kinds */
+  const bool crowd = (double)broken > crowded * (double)r->layer.tet_count;
+  if (!laves__known_take(&r->lattice, known) || (round >= WALLS && !zone_broken_walls(r))) return false;
+  laves__zone_around(r->guarantee, &r->layer, r->forced, round == 0 ? 1 : 3, &r->lattice, known);
+  return !(crowd || round >= ALL) || zone_everything_near(r, known);
+}
+
+/* The boundary made anew by stuffing in the lattice's zone, and held to features. What is near the zone is grafted into the layer
+ * as it was; where that does not fit, all of it is taken. */
+static laves_result make_zone(laves__run *r, const laves__known_lattice *known, laves__layer *improved) {
+  bool fits = false;
+  *improved = r->layer;
+  r->layer = (laves__layer){0};
   laves_result result = laves__stuff_zone(r);
   if (result == LAVES_OK && r->frame.features) result = hold_features(r);
   if (result != LAVES_OK) return result;
-  if (!laves__components_find(&r->layer, &m->now) || !laves__twins_find(&m->improved, m->before, &m->now, m->again, &m->twins))
-    return laves__fail_memory(r->context, r->error);
-  laves__twins_set_aside(&m->twins, &r->layer);
-  return LAVES_OK;
-}
-
-/* What was made anew and improved is what comes back in the next round. */
-static laves_result start_from_here(laves__run *r, mending *m) {
-  bool *again = laves__alloc(r->context, m->now.count, sizeof *again);
-  if (again) laves__find_broken_walls(r->guarantee, &r->layer, r->forced, &m->now, again);
-  const bool memory = again && laves__twins_bring_back(&m->twins, &r->layer);
-  laves__twins_free(&m->twins);
-  laves__free(r->context, m->again, m->before->count, sizeof *m->again);
-  m->again = again;
-  laves__layer_free(&m->improved);
-  laves__components_free(m->before);
-  m->improved = r->layer;
-  *m->before = m->now;
-  memset(&r->layer, 0, sizeof r->layer);
-  memset(&m->now, 0, sizeof m->now);
-  return memory ? LAVES_OK : laves__fail_memory(r->context, r->error);
-}
-
-/* Where more than this share of what was made anew breaks the promise before it is improved, only all of improvement helps. */
-static const double dense_share = 0.003;
-
-/* One round: what was made anew, improved; *broken: how many tets break the promise then. */
-static laves_result improve_zone(laves__run *r, mending *m, size_t *broken) {
-  m->complete =
-      m->complete || (double)laves__count_broken(r->guarantee, &r->layer, NULL) > dense_share * (double)m->now.vertex_count;
-  laves_result result = m->complete ? improve_layer(r) : rescue(r);
-  if (result == LAVES_OK) result = find_forced(r);
-  if (result != LAVES_OK) return result;
-  *broken = count_broken(r);
-  if (*broken > 0 || m->complete) return LAVES_OK;
-  m->complete = true;
-  result = improve_layer(r);
-  if (result == LAVES_OK) result = find_forced(r);
-  if (result == LAVES_OK) *broken = count_broken(r);
+  laves__stage_begin(r);
+  result = laves__graft(known, &r->lattice, &r->layer, improved, &fits, r->error);
+  laves__stage_end(r, "stuff");
+  if (!fits) return result;
+  r->layer = *improved;
+  *improved = (laves__layer){0};
   return result;
 }
 
-/* Stuffing in a growing zone, until no tet breaks the promise or nothing more can be stuffed. Where few do, only those are
- * improved meanwhile: it is the zone that is looked for, and to improve all of it in each round would take long. */
-static laves_result find_zone(laves__run *r, mending *m) {
-  enum { ROUNDS = 8 };
-  for (int round = 0; round < ROUNDS; round++) {
-    size_t broken = 0;
-    laves_result result = make_zone(r, m);
-    if (result == LAVES_OK) result = improve_zone(r, m, &broken);
-    if (result == LAVES_OK && laves__is_cancelled(r->context)) result = laves__fail_cancelled(r->error);
-    if (result != LAVES_OK || broken == 0) return result;
-    if (!widen_zone(r, &m->now, round + 1)) return laves__fail_memory(r->context, r->error);
-    if (m->complete && round + 1 < ROUNDS) result = start_from_here(r, m);
-    if (result != LAVES_OK) return result;
-  }
-  return m->complete ? LAVES_OK : improve_layer(r);
+/* One round: stuffing in the zone, and what was made anew improved. */
+static laves_result mend_zone(laves__run *r, const laves__known_lattice *known) {
+  laves__layer improved = {0};
+  laves_result result = make_zone(r, known, &improved);
+  laves__layer_free(&improved);
+  if (result == LAVES_OK) result = improve_layer(r);
+  if (result == LAVES_OK) result = find_forced(r);
+  return result == LAVES_OK && laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : result;
 }
 
-/* Mends the promise. */
-static laves_result mend(laves__run *r, mending *m) {
-  m->again = laves__alloc(r->context, m->before->count, sizeof *m->again);
-  if (!m->again) return laves__fail_memory(r->context, r->error);
-  laves__find_broken_walls(r->guarantee, &r->layer, r->forced, m->before, m->again);
-  if (!widen_zone(r, m->before, 0)) return laves__fail_memory(r->context, r->error);
-  m->improved = r->layer;
-  memset(&r->layer, 0, sizeof r->layer);
-  laves_result result = find_zone(r, m);
-  if (result == LAVES_OK && !laves__twins_bring_back(&m->twins, &r->layer)) result = laves__fail_memory(r->context, r->error);
-  return result;
-}
-
-/* Where the promised window is broken, but for what the input forces. `before`: the components of the layer before it was
- * improved. */
-static laves_result mend_promise(laves__run *r, laves__components *before) {
+/* Where the promised window is broken, but for what the input forces: stuffing in a growing zone, until no tet breaks the promise
+ * or nothing more can be stuffed. */
+static laves_result mend_promise(laves__run *r) {
+  enum { ROUNDS = 11 };
+  laves__known_lattice known = {0};
   laves_result result = find_forced(r);
-  if (result == LAVES_OK && count_broken(r) > 0) {
-    mending m = {.before = before};
-    result = laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : mend(r, &m);
-    laves__twins_free(&m.twins);
-    laves__components_free(&m.now);
-    laves__layer_free(&m.improved);
-    laves__free(r->context, m.again, before->count, sizeof *m.again);
-    if (result == LAVES_OK) result = find_forced(r);
+  size_t broken = result == LAVES_OK ? count_broken(r) : 0;
+  if (laves__is_cancelled(r->context)) result = laves__fail_cancelled(r->error);
+  for (int round = 0; result == LAVES_OK && round < ROUNDS && broken > 0; round++) {
+    result = widen_zone(r, round, broken, &known) ? mend_zone(r, &known) : laves__fail_memory(r->context, r->error);
+    if (result == LAVES_OK) broken = count_broken(r);
+    if (laves__is_cancelled(r->context)) result = laves__fail_cancelled(r->error);
   }
+  laves__known_free(&known);
   if (result == LAVES_OK && r->forced) r->report->forced_tets = laves__count_broken(r->guarantee, &r->layer, NULL);
   return result == LAVES_OK && laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : result;
 }
 
 /* The layer improved, and inside the promised window. */
 laves_result laves__improve_boundary(laves__run *r) {
-  laves__components before = {0};
-  bool memory = !laves__may_mend(r) || laves__components_find(&r->layer, &before);
-  laves_result result = memory ? improve_layer(r) : laves__fail_memory(r->context, r->error);
+  laves_result result = improve_layer(r);
   if (result == LAVES_OK && laves__may_mend(r) && laves__filled_share(r) == 0) { /* flat tets only, all peeled off */
     result = laves__stuff_everything(r);
-    laves__components_free(&before);
-    if (result == LAVES_OK) memory = laves__components_find(&r->layer, &before);
-    if (result == LAVES_OK) result = memory ? improve_layer(r) : laves__fail_memory(r->context, r->error);
+    if (result == LAVES_OK) result = improve_layer(r);
   }
-  if (result == LAVES_OK && laves__may_mend(r)) result = mend_promise(r, &before);
-  laves__components_free(&before);
-  return result;
+  return result == LAVES_OK && laves__may_mend(r) ? mend_promise(r) : result;
 }

@@ -8,7 +8,10 @@
  * the octree to the next the size at most doubles, and blocks are fifteen to thirty times what lies in them.)
  *
  * First passes only smooth; when that no longer helps, contraction joins in; the few that are still clearly outside are
- * treated once more with more smoothing around each contraction. On a graded background flips join in from the first. */
+ * treated once more with more smoothing around each contraction. On a graded background flips join in from the first.
+ *
+ * Where the layer has a mask of what is fresh, only tets with such a vertex are worked on; what is known of the others is that
+ * nothing helped. */
 
 #include "improve/blocks.h"
 #include "improve/contract.h"
@@ -37,8 +40,7 @@ static const size_t crease_crowd_min = 500; /* tets */
 /* Where even more than this share is bad after one pass, the solid is noise at this size: smoothing goes on for one more pass
  * only, and only tets far outside get a contraction. */
 static const double rough_share = 0.2;
-static const double rough_admit = 0.4;  /* quality: about 26 degrees */
-static const double rescue_slack = 1.2; /* times the quality of the angles that are rescued from */
+static const double rough_admit = 0.4; /* quality: about 26 degrees */
 /* Where that is known beforehand, smoothing leaves those alone, too, that are better than this. */
 static const double brief_admit = 0.6;      /* about 32 degrees */
 static const double worthwhile = 0.02;      /* see the member of `work` */
@@ -73,6 +75,9 @@ typedef struct work {
   laves__measure measure;
   double target;
   laves__layer *layer;
+  int32_t *fresh; /* [fresh_count] tets that are fresh at first, and dead ones, ascending; NULL: all */
+  size_t fresh_count;
+  size_t population;       /* tets, of which those that are bad are a share: all, or the fresh ones that live */
   laves__journal *journal; /* one for each worker */
   laves__patients patients;
   double progress; /* share of the first bad tets that are cured, for the caller's eyes */
@@ -91,20 +96,28 @@ typedef struct work {
   int rounds;                 /* of smoothing around a contraction; 0: smoothing only */
 } work;
 
+/* What is not fresh keeps the quality that it was left with. */
 static void measure_all(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const work *w = user;
-  laves__measure_tets(&w->measure, w->layer, begin, end, w->layer->quality + begin);
+  if (!w->fresh) laves__measure_tets(&w->measure, w->layer, begin, end, w->layer->quality + begin);
+  for (size_t i = begin; w->fresh && i < end; i++)
+    if (w->layer->tet[w->fresh[i]][0] >= 0)
+      w->layer->quality[w->fresh[i]] = laves__layer_quality(&w->measure, w->layer, w->fresh[i]);
 }
 
 static bool is_bad(const work *w, int32_t t) { return laves__is_bad(w->layer, &w->admission, t); }
+
+/* The tets that may be worked on: how many, and number i. */
+static size_t count_tets(const work *w) { return w->fresh ? w->fresh_count : w->layer->tet_count; }
+static int32_t tet_at(const work *w, size_t i) { return w->fresh ? w->fresh[i] : (int32_t)i; }
 
 static size_t count_bad(const work *w) { return laves__count_bad(w->layer, &w->admission); }
 
 /* Whether walls a tet thick are more than a place or two: contraction is dear, and there it seldom reaches the asked window. */
 static bool has_thin_walls(const work *w) {
   size_t count = 0;
-  for (size_t t = 0; t < w->layer->tet_count; t++) count += is_bad(w, (int32_t)t) && laves__spans_wall(w->layer, (int32_t)t);
+  for (size_t i = 0; i < count_tets(w); i++) count += is_bad(w, tet_at(w, i)) && laves__spans_wall(w->layer, tet_at(w, i));
   return count > wall_count;
 }
 
@@ -181,8 +194,8 @@ static laves__spare vertices_of(const work *w, size_t block) {
 /* Lists the dead tets and vertices anew. */
 static void collect_spare(work *w) {
   w->spare_count = 0;
-  for (size_t t = 0; w->spare && t < w->layer->tet_count; t++)
-    if (w->layer->tet[t][0] < 0) w->spare[w->spare_count++] = (int32_t)t;
+  for (size_t i = 0; w->spare && i < count_tets(w); i++)
+    if (w->layer->tet[tet_at(w, i)][0] < 0) w->spare[w->spare_count++] = tet_at(w, i);
   w->spare_vertex_count = 0;
   for (size_t v = w->first_spare_vertex; w->spare_vertex && v < w->layer->vertex_count; v++)
     if (w->layer->star[v].count == 0 && laves__layer_moves(w->layer, (int32_t)v))
@@ -259,16 +272,20 @@ static laves_result run_passes(work *w, int passes, int patience, laves_error *e
   return LAVES_OK;
 }
 
+/* Whether a boundary vertex that may be worked on is not where it belongs. */
+static bool is_off(const laves__layer *layer, size_t v) {
+  return layer->off_surface[v] && layer->star[v].count > 0 && (!layer->fresh || layer->fresh[v]);
+}
+
 static void settle_all(work *w, double floor) {
   for (size_t v = 0; v < w->layer->vertex_count; v++)
-    if (w->layer->off_surface[v] && w->layer->star[v].count > 0)
-      laves__settle_vertex(w->frame, &w->measure, floor, w->layer, (int32_t)v);
+    if (is_off(w->layer, v)) laves__settle_vertex(w->frame, &w->measure, floor, w->layer, (int32_t)v);
 }
 
 /* How many boundary vertices are not where they belong. */
 static size_t count_off(const work *w) {
   size_t count = 0;
-  for (size_t v = 0; v < w->layer->vertex_count; v++) count += w->layer->off_surface[v] && w->layer->star[v].count > 0;
+  for (size_t v = 0; v < w->layer->vertex_count; v++) count += is_off(w->layer, v);
   return count;
 }
 
@@ -276,22 +293,23 @@ static size_t count_off(const work *w) {
 static void peel_all(work *w) {
   for (bool again = true; again;) {
     again = false;
-    for (size_t t = 0; t < w->layer->tet_count; t++)
-      if (w->layer->tet[t][0] >= 0 && w->layer->quality[t] < peel_below && laves__peel_tet(w->frame, w->layer, (int32_t)t))
-        again = true;
+    for (size_t i = 0; i < count_tets(w); i++) {
+      const int32_t t = tet_at(w, i);
+      if (w->layer->tet[t][0] >= 0 && w->layer->quality[t] < peel_below && laves__peel_tet(w->frame, w->layer, t)) again = true;
+    }
   }
 }
 
 /* Whether the bad tets are more than `least`, and more than a share of the layer. */
 static bool is_crowded(const work *w, double share, size_t least) {
   const size_t bad = count_bad(w);
-  return bad > least && (double)bad > share * (double)w->layer->tet_count;
+  return bad > least && (double)bad > share * (double)w->population;
 }
 
 /* Whether the bad ones are a large share of the tets that live. */
 static bool is_rough(const work *w) {
   size_t alive = 0;
-  for (size_t t = 0; t < w->layer->tet_count; t++) alive += w->layer->tet[t][0] >= 0;
+  for (size_t i = 0; i < count_tets(w); i++) alive += w->layer->tet[tet_at(w, i)][0] >= 0;
   const size_t bad = count_bad(w);
   return bad > crowd_min && (double)bad > rough_share * (double)alive;
 }
@@ -454,24 +472,9 @@ static laves_result mend_again(work *w, laves_error *error) {
   return result;
 }
 
-/* Only the worst: smoothing makes room, and contraction does the rest. */
-static laves_result rescue(work *w, const laves__window *window, laves_error *error) {
-  static const double radians = 3.14159265358979323846 / 180;
-  settle_all(w, settle_floor);
-  w->admission.below = rescue_slack * fmax(w->measure.low_scale * (1 - cos(window->rescue_min * radians)),
-                                           w->measure.high_scale * (1 + cos(window->rescue_max * radians)));
-  w->admission.below = fmin(w->admission.below, 1);
-  laves_result result = run_passes(w, SMOOTH_PASSES, 1, error);
-  w->rounds = THOROUGH_ROUNDS;
-  if (result == LAVES_OK) result = run_passes(w, CONTRACT_PASSES, 2, error);
-  if (result == LAVES_OK) peel_all(w);
-  return result;
-}
-
 /* The schedule for what the layer is. */
 static laves_result mend_all(work *w, const laves__window *window, laves_error *error) {
   if (w->layer->patch) return mend_given(w, error);
-  if (window->rescue_min > 0) return rescue(w, window, error);
   if (window->again) return mend_again(w, error);
   const laves_result result = w->layer->hold ? bring_home(w, error) : LAVES_OK;
   if (result != LAVES_OK) return result;
@@ -485,6 +488,36 @@ static bool short_of_memory(const work *w, int workers) {
   return false;
 }
 
+/* Tets that live and are fresh; where all are, dead ones count, too. */
+static size_t count_population(const laves__layer *layer) {
+  size_t count = 0;
+  if (!layer->fresh) return layer->tet_count;
+  for (size_t t = 0; t < layer->tet_count; t++) count += layer->tet[t][0] >= 0 && laves__layer_is_fresh(layer, (int32_t)t);
+  return count;
+}
+
+static size_t count_fresh_vertices(const laves__layer *layer) {
+  size_t count = 0;
+  for (size_t v = 0; v < layer->vertex_count; v++) count += !layer->fresh || layer->fresh[v];
+  return count;
+}
+
+static bool may_be_worked_on(const laves__layer *layer, size_t t) {
+  return layer->tet[t][0] < 0 || laves__layer_is_fresh(layer, (int32_t)t);
+}
+
+/* Lists what is fresh; false when memory is short. */
+static bool list_fresh(work *w) {
+  const laves__layer *layer = w->layer;
+  if (!layer->fresh) return true;
+  for (size_t t = 0; t < layer->tet_count; t++) w->fresh_count += may_be_worked_on(layer, t);
+  w->fresh = laves__alloc(layer->context, w->fresh_count, sizeof *w->fresh);
+  if (!w->fresh) return false;
+  for (size_t t = 0, next = 0; t < layer->tet_count; t++)
+    if (may_be_worked_on(layer, t)) w->fresh[next++] = (int32_t)t;
+  return true;
+}
+
 laves_result laves__improve(const laves__frame *frame, const laves__window *window, laves__layer *layer, laves_error *error) {
   laves_context *context = layer->context;
   work w = {.frame = frame,
@@ -495,12 +528,14 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
             .passes_left = window->passes > 0 ? window->passes : SIZE_MAX,
             .deadline = window->deadline,
             .layer = layer};
+  w.population = count_population(layer);
   leave_out_sharp(&w, window);
   const int workers = laves__workers(context);
   laves_result result = LAVES_OK;
   const bool flips = layer->scale || layer->hold;
-  if (flips && !laves__layer_extend(layer, layer->tet_count / spare_share + spare_min)) return laves__fail_memory(context, error);
-  const size_t extra = layer->hold ? layer->vertex_count / spare_vertex_share + spare_vertex_min : 0;
+  if (flips && !laves__layer_extend(layer, w.population / spare_share + spare_min)) return laves__fail_memory(context, error);
+  if (!layer->fresh) w.population = layer->tet_count; /* the spare ones, too */
+  const size_t extra = layer->hold ? count_fresh_vertices(layer) / spare_vertex_share + spare_vertex_min : 0;
   w.first_spare_vertex = layer->vertex_count;
   if (extra && !laves__layer_extend_vertices(layer, extra)) return laves__fail_memory(context, error);
   if (extra) w.spare_vertex = laves__alloc(context, extra, sizeof *w.spare_vertex);
@@ -509,15 +544,17 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   w.given_up = laves__alloc(context, layer->tet_count, sizeof *w.given_up);
   w.stuck = laves__alloc(context, layer->tet_count, sizeof *w.stuck);
   w.tries = laves__alloc_zeroed(context, layer->tet_count, 1);
-  if (!w.journal || !w.given_up || !w.stuck || !w.tries || (flips && !w.spare) || (extra && !w.spare_vertex)) {
+  if (!w.journal || !w.given_up || !w.stuck || !w.tries || (flips && !w.spare) || (extra && !w.spare_vertex) || !list_fresh(&w)) {
     result = laves__fail_memory(context, error);
     goto cleanup;
   }
+  w.admission.list = w.fresh;
+  w.admission.list_count = w.fresh_count;
   for (size_t t = 0; t < layer->tet_count; t++) w.given_up[t] = w.stuck[t] = HUGE_VAL;
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
-  if (!laves__parallel_for(context, NULL, layer->tet_count, 1024, measure_all, &w)) result = laves__fail_cancelled(error);
+  if (!laves__parallel_for(context, NULL, count_tets(&w), 1024, measure_all, &w)) result = laves__fail_cancelled(error);
   if (layer->patch && !laves__blocks_begin(layer, window->block_vertices, &w.blocks)) result = laves__fail_memory(context, error);
-  if (result == LAVES_OK && !layer->patch && !window->again && window->rescue_min == 0)
+  if (result == LAVES_OK && !layer->patch && !window->again)
     result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
   if (result == LAVES_OK) result = mend_all(&w, window, error);
   if (result == LAVES_OK && !layer->patch) settle_all(&w, settle_floor);
@@ -528,6 +565,7 @@ cleanup:
   for (int i = 0; w.journal && i < workers; i++) laves__journal_free(&w.journal[i]);
   laves__free(context, w.spare_vertex, extra, sizeof *w.spare_vertex);
   laves__free(context, w.spare, layer->tet_count, sizeof *w.spare);
+  laves__free(context, w.fresh, w.fresh_count, sizeof *w.fresh);
   laves__free(context, w.tries, layer->tet_count, 1);
   laves__free(context, w.stuck, layer->tet_count, sizeof *w.stuck);
   laves__free(context, w.given_up, layer->tet_count, sizeof *w.given_up);

@@ -25,14 +25,13 @@ typedef struct laves__window {
   double volume_length;              /* 0: not asked */
   double held_min, held_max;         /* all tets are inside these angles and stay so; 0 and 180: nothing is held */
   bool again;                        /* after a first time: without the Laplace start */
-  double rescue_min, rescue_max;     /* with all patience, but only what is outside these, or nearly; 0 and 180: all */
   size_t passes;                     /* at most so many; 0: as many as help */
   double deadline;                   /* of laves__wall_seconds(), when to stop; 0: never */
   size_t block_vertices;             /* as laves__blocks_begin() takes them; for tests */
   bool brief;                        /* the solid is rougher than the size: few passes, and only the worst get more */
 } laves__window;
 
-/* Improves the layer until every tet is inside the window, or no operation helps.
+/* Improves the layer, or what of it is fresh, until every tet is inside the window, or no operation helps.
  * Promise: the worst quality never falls; vertices on the surface stay on it; vertices deeper than LAVES__DEPTH_MOVES stay
  * where they are; tets stay positive (by an exact test); the boundary stays a manifold of the same topology.
  * The result does not depend on the number of threads.

@@ -64,6 +64,12 @@ static int by_level_colour_block_quality(const void *left, const void *right) {
   return a->tet < b->tet ? -1 : a->tet > b->tet;
 }
 
+/* The tets that are looked at: how many, and number i. */
+static size_t count_tets(const laves__layer *layer, const laves__admission *admission) {
+  return admission->list ? admission->list_count : layer->tet_count;
+}
+static int32_t tet_at(const laves__admission *admission, size_t i) { return admission->list ? admission->list[i] : (int32_t)i; }
+
 /* What all threads share while they look. */
 typedef struct search {
   const laves__layer *layer;
@@ -78,14 +84,14 @@ static void look(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   search *s = user;
   for (size_t chunk = begin; chunk < end; chunk++) {
-    const size_t first = chunk * CHUNK, rest = s->layer->tet_count - first, last = first + (rest < CHUNK ? rest : CHUNK);
+    const size_t first = chunk * CHUNK, rest = count_tets(s->layer, s->admission) - first;
     size_t count = 0, bad = 0;
-    for (size_t t = first; t < last; t++) {
-      if (!laves__is_bad(s->layer, s->admission, (int32_t)t)) continue;
+    for (size_t i = first; i < first + (rest < CHUNK ? rest : CHUNK); i++) {
+      const int32_t t = tet_at(s->admission, i);
+      if (!laves__is_bad(s->layer, s->admission, t)) continue;
       bad++;
-      if (s->given && laves__blocks_of(s->given, s->layer, (int32_t)t) < 0) continue;
-      if (s->item)
-        s->item[s->found[chunk] + count] = s->given ? admit_given(s->given, s->layer, (int32_t)t) : admit(s->layer, (int32_t)t);
+      if (s->given && laves__blocks_of(s->given, s->layer, t) < 0) continue;
+      if (s->item) s->item[s->found[chunk] + count] = s->given ? admit_given(s->given, s->layer, t) : admit(s->layer, t);
       count++;
     }
     if (s->item) continue;
@@ -94,12 +100,14 @@ static void look(void *user, size_t begin, size_t end, int worker) {
   }
 }
 
-static size_t chunks_of(const laves__layer *layer) { return (layer->tet_count + CHUNK - 1) / CHUNK; }
+static size_t chunks_of(const laves__layer *layer, const laves__admission *admission) {
+  return (count_tets(layer, admission) + CHUNK - 1) / CHUNK;
+}
 
 /* Counts, and makes room: item[] for twice as many, as sorting needs. False when memory is short. */
 static bool find_room(search *s, laves__patients *p) {
   laves_context *context = s->layer->context;
-  for (size_t chunk = 0; chunk < chunks_of(s->layer); chunk++) {
+  for (size_t chunk = 0; chunk < chunks_of(s->layer, s->admission); chunk++) {
     const size_t count = s->found[chunk];
     s->found[chunk] = p->count;
     p->count += count;
@@ -120,7 +128,7 @@ static bool find_blocks(laves_context *context, laves__patients *p) {
 bool laves__patients_list(const laves__layer *layer, const laves__admission *admission, const laves__blocks *given,
                           laves__patients *p) {
   laves_context *context = layer->context;
-  const size_t chunks = chunks_of(layer);
+  const size_t chunks = chunks_of(layer, admission);
   search s = {.layer = layer, .admission = admission, .given = given};
   atomic_init(&s.bad, 0);
   p->count = p->block_count = p->bad = 0;
@@ -154,13 +162,14 @@ static void count_some(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   tally *sum = user;
   size_t count = 0;
-  for (size_t t = begin; t < end; t++) count += laves__is_bad(sum->layer, sum->admission, (int32_t)t);
+  for (size_t i = begin; i < end; i++) count += laves__is_bad(sum->layer, sum->admission, tet_at(sum->admission, i));
   atomic_fetch_add(&sum->count, count);
 }
 
 size_t laves__count_bad(const laves__layer *layer, const laves__admission *admission) {
   tally sum = {.layer = layer, .admission = admission};
   atomic_init(&sum.count, 0);
-  laves__parallel_for(layer->context, NULL, layer->tet_count, CHUNK, count_some, &sum); /* after a cancel nobody asks */
+  laves__parallel_for(layer->context, NULL, count_tets(layer, admission), CHUNK, count_some,
+                      &sum); /* after a cancel nobody asks */
   return atomic_load(&sum.count);
 }

@@ -16,6 +16,8 @@ typedef struct laves__admission {
   double below;        /* the quality from which on they are not */
   bool thin;           /* tets that span a wall are good enough a little earlier */
   const uint8_t *near; /* [tet_count] which tets are meant; NULL: all */
+  const int32_t *list; /* [list_count] the tets that are looked at, ascending; NULL: all */
+  size_t list_count;
 } laves__admission;
 
 typedef struct laves__patients {

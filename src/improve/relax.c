@@ -90,6 +90,7 @@ static void find_places(void *user, size_t begin, size_t end, int worker) {
     place *p = &s->other[v];
     p->moved = false;
     const laves__hold hold = laves__layer_hold(layer, (int32_t)v);
+    if (layer->fresh && !layer->fresh[v]) continue;
     laves__vec3 aim;
     if (layer->depth[v] != 0 || layer->off_surface[v] || hold.kind == LAVES__HOLD_CORNER || !find_aim(s, (int32_t)v, &aim))
       continue;
@@ -115,8 +116,12 @@ static void exchange(laves__layer *layer, place *p, size_t v) {
 static void measure_tets(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const sweep *s = user;
+  laves__layer *layer = s->layer;
   /* Those that nothing touched keep theirs, to the last digit. */
-  laves__measure_tets(s->measure, s->layer, begin, end, s->layer->quality + begin);
+  if (!layer->fresh) laves__measure_tets(s->measure, layer, begin, end, layer->quality + begin);
+  for (size_t t = begin; layer->fresh && t < end; t++)
+    if (layer->tet[t][0] >= 0 && laves__layer_is_fresh(layer, (int32_t)t))
+      layer->quality[t] = laves__layer_quality(s->measure, layer, (int32_t)t);
 }
 
 static bool is_worse(const laves__layer *layer, int32_t t, double worst) {

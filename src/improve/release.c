@@ -12,7 +12,7 @@ static laves__measure measure_for(const laves__frame *frame, const laves__window
 }
 
 static bool is_outside(const laves__measure *m, const laves__layer *layer, size_t t) {
-  return layer->tet[t][0] >= 0 && laves__layer_quality(m, layer, (int32_t)t) < 1;
+  return layer->tet[t][0] >= 0 && laves__layer_is_fresh(layer, (int32_t)t) && laves__layer_quality(m, layer, (int32_t)t) < 1;
 }
 
 size_t laves__mark_forced(const laves__frame *frame, double sharper_than, const laves__layer *layer, bool *forced) {
@@ -25,7 +25,7 @@ size_t laves__mark_forced(const laves__frame *frame, double sharper_than, const 
 }
 
 static bool shall_go(const laves__layer *layer, int32_t v, laves__release what) {
-  if (layer->depth[v] != 0) return false;
+  if (layer->depth[v] != 0 || (layer->fresh && !layer->fresh[v])) return false;
   const uint8_t kind = layer->hold[v].kind;
   if (kind < LAVES__HOLD_CREASE) return false;
   if (what == LAVES__RELEASE_OFF) return layer->off_surface[v];

@@ -117,7 +117,7 @@ bool laves__layer_extend_vertices(laves__layer *l, size_t extra) {
                       {&l->hint, sizeof *l->hint, NULL},         {&l->depth, sizeof *l->depth, NULL},
                       {&l->hold, sizeof *l->hold, NULL},         {&l->off_surface, sizeof *l->off_surface, NULL},
                       {&l->scale, sizeof *l->scale, NULL},       {&l->origin, sizeof *l->origin, NULL},
-                      {&l->star, sizeof *l->star, NULL}};
+                      {&l->star, sizeof *l->star, NULL},         {&l->fresh, sizeof *l->fresh, NULL}};
   if (old + extra > INT32_MAX || !lengthen(l->context, all, LAVES__COUNT_OF(all), old, extra)) return false;
   l->vertex_count = old + extra;
   for (size_t v = old; v < l->vertex_count; v++) {
@@ -129,6 +129,7 @@ bool laves__layer_extend_vertices(laves__layer *l, size_t extra) {
     l->star[v] = (laves__star){0};
     if (l->hold) l->hold[v] = (laves__hold){0, LAVES__HOLD_SURFACE};
     if (l->scale) l->scale[v] = 1;
+    if (l->fresh) l->fresh[v] = true;
   }
   return true;
 }
@@ -145,6 +146,7 @@ void laves__layer_free(laves__layer *layer) {
   laves__free(context, layer->hold, layer->hold ? vertices : 0, sizeof *layer->hold);
   laves__free(context, layer->off_surface, vertices, sizeof *layer->off_surface);
   laves__free(context, layer->scale, layer->scale ? vertices : 0, sizeof *layer->scale);
+  laves__free(context, layer->fresh, layer->fresh ? vertices : 0, sizeof *layer->fresh);
   laves__free(context, layer->origin, vertices, sizeof *layer->origin);
   laves__free(context, layer->star, vertices, sizeof *layer->star);
   laves__free(context, layer->tet, tets, sizeof *layer->tet);

@@ -40,6 +40,7 @@ typedef struct laves__layer {
   bool *off_surface;   /* depth 0, but not on the surface: it could not be reached with positive tets */
   float *scale;        /* the local size, in sizes, on a graded background; NULL: 1 everywhere */
   uint32_t *origin;    /* record * 24 + site, or LAVES__NO_ORIGIN for the further copies of a parted vertex */
+  bool *fresh;         /* what is to be improved: tets with such a vertex; NULL: all */
   laves__star *star;   /* of depth 0 .. LAVES__DEPTH_MOVES; NULL tet: dead vertex */
   size_t tet_count;
   int32_t (*tet)[4]; /* tet[t][0] < 0: dead */
@@ -91,6 +92,13 @@ static inline double laves__layer_cube(const laves__layer *layer, int32_t tet) {
 }
 static inline bool laves__layer_moves(const laves__layer *layer, int32_t vertex) {
   return layer->depth[vertex] <= LAVES__DEPTH_MOVES;
+}
+
+/* Whether a tet that lives is to be improved. */
+static inline bool laves__layer_is_fresh(const laves__layer *layer, int32_t tet) {
+  const bool *fresh = layer->fresh;
+  const int32_t *t = layer->tet[tet];
+  return !fresh || fresh[t[0]] || fresh[t[1]] || fresh[t[2]] || fresh[t[3]];
 }
 
 /* The other tet of the layer at the face of `tet` opposite `corner`, or -1. At least one vertex of the face must move. */

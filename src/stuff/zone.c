@@ -50,25 +50,35 @@ size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer
   return broken + count_broken_of(&batch, count, &promised);
 }
 
-static void zone_cells(laves__lattice *lattice, laves__vec3 centre, int reach) {
+bool laves__is_broken(const laves__guarantee *guarantee, const laves__layer *layer) {
+  const laves__guarantee promised = promised_window(guarantee);
+  if (!layer->fresh) return laves__count_broken(guarantee, layer, NULL) > 0;
+  for (size_t t = 0; t < layer->tet_count; t++)
+    if (layer->tet[t][0] >= 0 && laves__layer_is_fresh(layer, (int32_t)t) && is_broken(layer, t, &promised)) return true;
+  return false;
+}
+
+static void zone_cells(laves__lattice *lattice, laves__known_lattice *known, laves__vec3 centre, int reach) {
   const int32_t x = (int32_t)floor(centre.x / LAVES__CELL_SIDE), y = (int32_t)floor(centre.y / LAVES__CELL_SIDE),
                 z = (int32_t)floor(centre.z / LAVES__CELL_SIDE);
   for (int dz = -reach; dz <= reach; dz++)
     for (int dy = -reach; dy <= reach; dy++)
       for (int dx = -reach; dx <= reach; dx++) {
         const int32_t cell = laves__lattice_cell(lattice, x + dx, y + dy, z + dz);
-        if (cell >= 0) lattice->record[cell].zone = all_sites;
+        if (cell < 0) continue;
+        lattice->record[cell].zone = all_sites;
+        laves__known_forget(known, (size_t)cell);
       }
 }
 
 void laves__zone_around(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced, int reach,
-                        laves__lattice *lattice) {
+                        laves__lattice *lattice, laves__known_lattice *known) {
   const laves__guarantee promised = promised_window(guarantee);
   for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(layer->context, "stuff", t, layer->tet_count); t++) {
     if (!is_broken(layer, t, &promised) || (forced && forced[t])) continue;
     laves__vec3 p[4];
     laves__layer_points(layer, (int32_t)t, p);
-    zone_cells(lattice, v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25), reach);
+    zone_cells(lattice, known, v3_scale(v3_add(v3_add(p[0], p[1]), v3_add(p[2], p[3])), 0.25), reach);
   }
 }
 

@@ -170,6 +170,13 @@ static laves_result mesh_by_stuff(laves_context *context, const job_place *place
   return mesh_with(context, place, what, options, out);
 }
 
+/* Snapping leaves tets outside so high a window, and what is near them is made anew. */
+static laves_result mesh_by_graft(laves_context *context, const job_place *place, const char *what, job_outcome *out) {
+  laves_options options = options_of_size(0.2);
+  options.guarantee = 28;
+  return mesh_with(context, place, what, options, out);
+}
+
 static laves_result mesh_by_default(laves_context *context, const job_place *place, const char *what, job_outcome *out) {
   return mesh_with(context, place, what, options_of_size(0.5), out);
 }
@@ -533,6 +540,7 @@ const job jobs[] = {
     {"read backgrounds", read_backgrounds, "size"},
     {"mesh by snapping", mesh_by_snap, "sphere(1) - sphere(0.5)"},
     {"mesh by stuffing", mesh_by_stuff, "sphere(1)"},
+    {"mesh by grafting", mesh_by_graft, "gyroid{period=1, thickness=0.25} & sphere(0.5)"},
     {"mesh a script with a surface", mesh_by_default, "leaf.lua"},
     {"mesh an open surface", mesh_by_default, "open.off"},
     {"mesh a surface that crosses itself", mesh_by_default, "crossing.off"},
