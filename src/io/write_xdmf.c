@@ -11,21 +11,23 @@
 #include "io/write_text.h"
 
 /* Numbers that a mixed topology has for each cell: what it is, and its corners. */
-enum { CODE_TRIANGLE = 4, CODE_TET = 6, TET_NUMBERS = 5, FACE_NUMBERS = 4 };
+enum { CODE_TRIANGLE = 4, CODE_TET = 6, CODE_TRIANGLE_2 = 36, CODE_TET_2 = 38 };
 
-static bool is_mixed(const laves_mesh *mesh) { return laves__cell_faces(mesh) > 0; }
+/* One of second order always: programs differ in the name of a topology of ten-node tetrahedra, but not in their code. */
+static bool is_mixed(const laves_mesh *mesh) { return laves__cell_faces(mesh) > 0 || mesh->quadratic; }
 
-static size_t mixed_numbers(const laves_mesh *mesh) {
-  return TET_NUMBERS * mesh->tet_count + FACE_NUMBERS * laves__cell_faces(mesh);
-}
+static size_t mixed_numbers(const laves_mesh *mesh) { return laves__cell_count(mesh) + laves__cell_corners(mesh); }
 
 /* ---- the arrays ---- */
 
 static int32_t mixed_number(laves__tet_reader *reader, size_t i) {
-  const size_t tet_numbers = TET_NUMBERS * reader->mesh->tet_count;
-  if (i < tet_numbers) return i % TET_NUMBERS ? laves__tet_at(reader, i / TET_NUMBERS)[i % TET_NUMBERS - 1] : CODE_TET;
+  const laves_mesh *mesh = reader->mesh;
+  const bool second = mesh->quadratic != NULL;
+  const size_t tet = 1 + (size_t)laves__tet_width(mesh), face = 1 + (size_t)laves__face_width(mesh);
+  const size_t tet_numbers = tet * mesh->tet_count;
+  if (i < tet_numbers) return i % tet ? laves__tet_at(reader, i / tet)[i % tet - 1] : second ? CODE_TET_2 : CODE_TET;
   i -= tet_numbers;
-  return i % FACE_NUMBERS ? reader->mesh->faces[i / FACE_NUMBERS][i % FACE_NUMBERS - 1] : CODE_TRIANGLE;
+  return i % face ? laves__face_nodes(mesh, i / face)[i % face - 1] : second ? CODE_TRIANGLE_2 : CODE_TRIANGLE;
 }
 
 static size_t pack_mixed(const void *user, size_t begin, size_t end, char *bytes) {
