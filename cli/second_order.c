@@ -29,8 +29,8 @@ void second_order_say(const second_order *curved) {
   text_buffer nodes, edges, count, back, straight;
   text_say("order 2: %s, least Jacobian %.3g of the straight tet's; angles and certificate are of the straight tets",
            text_plural(&nodes, r->nodes, "node"), r->least_jacobian);
-  text_say("  %s of the boundary: %s on the surface, %s moved back, %s straightened", text_plural(&edges, r->boundary_edges, "edge"),
-           text_count(&count, r->on_surface), text_count(&back, r->moved_back),
+  text_say("  %s of the boundary: %s on the surface, %s moved back, %s straightened",
+           text_plural(&edges, r->boundary_edges, "edge"), text_count(&count, r->on_surface), text_count(&back, r->moved_back),
            text_count(&straight, r->straightened + r->unreached));
   if (r->has_distance)
     text_say("  distance to the surface: mean %.3g, was %.3g; at most %.3g, was %.3g", r->curved_mean, r->straight_mean,

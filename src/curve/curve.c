@@ -3,9 +3,9 @@
  *     edges and their middles -> edges of the boundary, with the patches below -> targets on surface and creases ->
  *     all nodes to their targets -> back, step by step, where the Jacobian is too small -> report
  *
- * In each round every tetrahedron that falls short sends back one of its nodes by half: the one whose step helps it most. All look at
- * the same nodes before any moves, so the result does not depend on threads. A tetrahedron whose nodes are all back at the middle
- * is as good as the straight one, so it ends. */
+ * In each round every tetrahedron that falls short sends back one of its nodes by half: the one whose step helps it most. All
+ * look at the same nodes before any moves, so the result does not depend on threads. A tetrahedron whose nodes are all back at
+ * the middle is as good as the straight one, so it ends. */
 #include <string.h>
 
 #include "curve/quadratic.h"
@@ -251,7 +251,8 @@ static laves_result check_call(const laves_mesh *mesh, const laves_curve_options
     return laves__fail(error, LAVES_ERROR_OPTION, "feature_angle is %g degrees; it must be 0 (none) or from 1 to 179",
                        o->feature_angle);
   if (!(o->feature_size >= 0 && isfinite(o->feature_size)))
-    return laves__fail(error, LAVES_ERROR_OPTION, "feature_size is %g; it must be 0 (the mean edge) or positive", o->feature_size);
+    return laves__fail(error, LAVES_ERROR_OPTION, "feature_size is %g; it must be 0 (the mean edge) or positive",
+                       o->feature_size);
   const laves_result held = laves__mesh_require_arrays(mesh, "second order", error);
   if (held != LAVES_OK) return held;
   for (size_t i = 0; i < mesh->tet_count; i++)
@@ -286,8 +287,7 @@ laves_result laves_mesh_curve(laves_context *context, laves_mesh *mesh, const la
   if (!list_bent(&c)) result = laves__fail_memory(context, error);
   if (result == LAVES_OK && domain) result = find_targets(&c, error);
   if (result == LAVES_OK && !move_nodes(&c)) result = laves__fail_memory(context, error);
-  if (result == LAVES_OK && domain && c.options->distances &&
-      !laves__curve_distances(context, mesh, c.quadratic, domain, &found))
+  if (result == LAVES_OK && domain && c.options->distances && !laves__curve_distances(context, mesh, c.quadratic, domain, &found))
     result = laves__fail_memory(context, error);
   if (result == LAVES_OK) {
     count_nodes(&c, &found);

@@ -14,9 +14,9 @@ typedef struct edge_list {
   laves_context *context;
   const laves_mesh *mesh;
   laves__quadratic *out;
-  size_t *start;   /* [vertex_count + 1] where the edges of each lower vertex begin in `high` */
-  int32_t *high;   /* [6 * tet_count] higher vertices; those that differ first */
-  size_t *count;   /* [vertex_count + 1] how many differ; later the number of the first of them */
+  size_t *start; /* [vertex_count + 1] where the edges of each lower vertex begin in `high` */
+  int32_t *high; /* [6 * tet_count] higher vertices; those that differ first */
+  size_t *count; /* [vertex_count + 1] how many differ; later the number of the first of them */
 } edge_list;
 
 static void lower_first(int32_t a, int32_t b, int32_t *low, int32_t *high) {

@@ -19,14 +19,14 @@ enum { LAVES__TET_NODES = 10, LAVES__FACE_NODES = 6 };
 /* The corners between which nodes 4 .. 9 of a tet stand, and nodes 3 .. 5 of a triangle. */
 static const uint8_t laves__mid_corners[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
 
-/* The nodes of all tets and boundary faces with every node at the middle of its edge; nodes are numbered after the vertices, by the
- * lower and then the higher vertex of their edge. NULL with an error when memory is short, the caller cancels, or there are more
- * nodes than 32 bits can number. Free with laves__quadratic_free(). */
+/* The nodes of all tets and boundary faces with every node at the middle of its edge; nodes are numbered after the vertices, by
+ * the lower and then the higher vertex of their edge. NULL with an error when memory is short, the caller cancels, or there are
+ * more nodes than 32 bits can number. Free with laves__quadratic_free(). */
 laves__quadratic *laves__quadratic_create(laves_context *context, const laves_mesh *mesh, laves_error *error);
 
-/* The least coefficient in Bernstein's form of det(dx/dλ), a cubic polynomial, by the determinant of the tet with the same corners
- * and straight edges: no point of the element has a smaller share of it. 1: the edges are straight, with nodes at their middles.
- * Where the corners have no positive volume the result is negative or 0 and means nothing else. */
+/* The least coefficient in Bernstein's form of det(dx/dλ), a cubic polynomial, by the determinant of the tet with the same
+ * corners and straight edges: no point of the element has a smaller share of it. 1: the edges are straight, with nodes at their
+ * middles. Where the corners have no positive volume the result is negative or 0 and means nothing else. */
 double laves__quadratic_least(const laves__vec3 nodes[LAVES__TET_NODES]);
 /* A point of a six-node triangle. */
 laves__vec3 laves__quadratic_point(const laves__vec3 nodes[LAVES__FACE_NODES], double l0, double l1, double l2);

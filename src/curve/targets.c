@@ -1,11 +1,12 @@
-/* Where the nodes on edges of the boundary shall stand: on the crease where the edge lies along one, else on the patch below its two
- * faces, else on the surface; each the nearest place to the middle of the edge. */
+/* Where the nodes on edges of the boundary shall stand: on the crease where the edge lies along one, else on the patch below its
+ * two faces, else on the surface; each the nearest place to the middle of the edge. */
 #include "curve/quadratic.h"
 #include "domain/features.h"
 
 static const char phase[] = "curve";
 
-/* No target is further from an edge's middle than this share of its length: an arc of more than a half circle is none to follow. */
+/* No target is further from an edge's middle than this share of its length: an arc of more than a half circle is none to follow.
+ */
 static const double reach_share = 0.5;
 /* Ends of an edge along a crease are this near to it, as a share of the edge's length. */
 static const double crease_share = 1e-3;
@@ -36,10 +37,12 @@ static void set_target(const search *s, laves__bent *b, laves__vec3 foot, bool o
 /* Whether both ends of an edge between two patches are on a crease between them, and the foot of its middle there. */
 static bool try_crease(const search *s, laves__bent *b, double length) {
   laves__vec3 foot;
-  for (int i = 0; i < 2; i++)
-    if (laves__crease_between(s->features, b->patch[0], &b->patch[1], 1, local(s, s->mesh->points[b->ends[i]]),
-                              crease_share * length, &foot) == LAVES__NO_FEATURE)
+  for (int i = 0; i < 2; i++) { /* the reach is to the crease's polyline, the foot is on the crease itself */
+    const laves__vec3 end = local(s, s->mesh->points[b->ends[i]]);
+    if (laves__crease_between(s->features, b->patch[0], &b->patch[1], 1, end, reach_share * length, &foot) == LAVES__NO_FEATURE ||
+        v3_distance(foot, end) > crease_share * length)
       return false;
+  }
   if (laves__crease_between(s->features, b->patch[0], &b->patch[1], 1, local(s, b->middle), reach_share * length, &foot) ==
       LAVES__NO_FEATURE)
     return true; /* it keeps to its middle */
@@ -51,12 +54,15 @@ static bool try_crease(const search *s, laves__bent *b, double length) {
 static bool try_seam(const search *s, laves__bent *b, double length) {
   laves__vec3 foot, tangent;
   int32_t crease[2];
-  for (int i = 0; i < 2; i++)
-    crease[i] = laves__seam_near(s->features, b->patch[0], local(s, s->mesh->points[b->ends[i]]), crease_share * length, &foot,
-                                 &tangent);
+  for (int i = 0; i < 2; i++) {
+    const laves__vec3 end = local(s, s->mesh->points[b->ends[i]]);
+    crease[i] = laves__seam_near(s->features, b->patch[0], end, reach_share * length, &foot, &tangent);
+    if (crease[i] != LAVES__NO_FEATURE && v3_distance(foot, end) > crease_share * length) return false;
+  }
   if (crease[0] == LAVES__NO_FEATURE || crease[0] != crease[1]) return false;
   /* A chord between two turns of a line is not on it: its middle is further from the line than an arc bulges. */
-  if (!laves__crease_project(s->features, crease[0], local(s, b->middle), reach_share / 2 * length, &foot, &tangent)) return false;
+  if (!laves__crease_project(s->features, crease[0], local(s, b->middle), reach_share / 2 * length, &foot, &tangent))
+    return false;
   set_target(s, b, foot, true);
   return true;
 }
@@ -69,7 +75,8 @@ static void find_on_features(const search *s, laves__bent *b) {
   uint32_t hint = LAVES__NO_HINT;
   laves__vec3 foot, normal;
   if (known && b->patch[0] == b->patch[1] && s->features->project_patch &&
-      s->features->project_patch(s->features->self, b->patch[0], local(s, b->middle), reach_share * length, &hint, &foot, &normal)) {
+      s->features->project_patch(s->features->self, b->patch[0], local(s, b->middle), reach_share * length, &hint, &foot,
+                                 &normal)) {
     set_target(s, b, foot, false);
     return;
   }
@@ -118,8 +125,8 @@ static void patch_range(void *user, size_t begin, size_t end, int worker) {
     const double reach = fmax(v3_distance(a, b), v3_distance(a, c));
     uint32_t hint = LAVES__NO_HINT;
     laves__vec3 foot, normal;
-    const bool found = s->oracle->project(s->oracle->self, local(s, v3_scale(v3_add(v3_add(a, b), c), 1.0 / 3)), reach, &hint,
-                                          &foot, &normal);
+    const bool found =
+        s->oracle->project(s->oracle->self, local(s, v3_scale(v3_add(v3_add(a, b), c), 1.0 / 3)), reach, &hint, &foot, &normal);
     s->patch[i] = found && s->features->patch_at ? s->features->patch_at(s->features->self, foot, hint) : LAVES__NO_FEATURE;
   }
 }

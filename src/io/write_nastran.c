@@ -45,7 +45,7 @@ static char *put_card(char *text, const char *name, const int64_t *numbers, int 
   for (int i = 0; i < count; i++) {
     if (i > 0 && i % (wide ? 4 : 8) == 0) {
       *text++ = '\n';
-      text = put_name(text, "", wide);
+      text = put_name(text, wide ? "" : "+", wide);
     }
     text = put_number(text, numbers[i], wide);
   }

@@ -13,8 +13,7 @@
 /* Numbers that a mixed topology has for each cell: what it is, and its corners. */
 enum { CODE_TRIANGLE = 4, CODE_TET = 6, CODE_TRIANGLE_2 = 36, CODE_TET_2 = 38 };
 
-/* One of second order always: programs differ in the name of a topology of ten-node tetrahedra, but not in their code. */
-static bool is_mixed(const laves_mesh *mesh) { return laves__cell_faces(mesh) > 0 || mesh->quadratic; }
+static bool is_mixed(const laves_mesh *mesh) { return laves__cell_faces(mesh) > 0; }
 
 static size_t mixed_numbers(const laves_mesh *mesh) { return laves__cell_count(mesh) + laves__cell_corners(mesh); }
 
@@ -47,7 +46,7 @@ void laves__write_xdmf_data(laves__output *out, const laves_mesh *mesh) {
   if (is_mixed(mesh))
     laves__hdf5_array(&file, root, "cells", LAVES__HDF5_INT32, mixed_numbers(mesh), 0, pack_mixed, mesh);
   else
-    laves__hdf5_array(&file, root, "cells", LAVES__HDF5_INT32, mesh->tet_count, 4, laves__pack_tets, mesh);
+    laves__hdf5_array(&file, root, "cells", LAVES__HDF5_INT32, mesh->tet_count, laves__tet_width(mesh), laves__pack_tets, mesh);
   laves__hdf5_array(&file, root, "region", LAVES__HDF5_INT32, cells, 0, laves__pack_cell_regions, mesh);
   laves__hdf5_array(&file, root, "class", LAVES__HDF5_UINT8, cells, 0, laves__pack_cell_classes, mesh);
   if (mesh->face_sources)
@@ -94,8 +93,11 @@ void laves__write_xdmf(laves__output *out, const laves_mesh *mesh, const char *n
       "      <Geometry GeometryType=\"XYZ\">\n");
   write_item(out, name, "points", "DataType=\"Float\" Precision=\"8\"", mesh->vertex_count, 3);
   laves__output_printf(out, "      </Geometry>\n      <Topology TopologyType=\"%s\" NumberOfElements=\"%zu\">\n",
-                       mixed ? "Mixed" : "Tetrahedron", cells);
-  write_item(out, name, "cells", int32, mixed ? mixed_numbers(mesh) : cells, mixed ? 0 : 4);
+                       mixed             ? "Mixed"
+                       : mesh->quadratic ? "Tetrahedron_10"
+                                         : "Tetrahedron",
+                       cells);
+  write_item(out, name, "cells", int32, mixed ? mixed_numbers(mesh) : cells, mixed ? 0 : laves__tet_width(mesh));
   laves__output_printf(out, "      </Topology>\n");
   write_names(out, mesh);
   write_attribute(out, name, "region", int32, cells);
