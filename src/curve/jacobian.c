@@ -6,8 +6,7 @@
  *     8 sum_pqr λ_p λ_q λ_r det(e_1p, e_2q, e_3r),
  *
  * and the coefficient of a cubic monomial's Bernstein polynomial is the mean over the orders of its p, q, r. A polynomial is
- * nowhere below its least coefficient, which makes the test sufficient. Source: A. Johnen, J.-F. Remacle, C. Geuzaine,
- * "Geometrical validity of curvilinear finite elements", Journal of Computational Physics 233, 2013, section 2. */
+ * nowhere below its least coefficient, which makes the test sufficient. Source: [johnen2013]. */
 #include "curve/quadratic.h"
 
 /* Where the sum for p, q, r in ascending order stands. */

@@ -1,5 +1,6 @@
-/* Meshes of second order: their volume converges two orders faster than that of straight tetrahedra, no Jacobian is ever negative,
- * whatever the solid, and threads change nothing. The integrals and Jacobians here are by the shape functions, at points. */
+/* Meshes of second order: their volume converges two orders faster than that of straight tetrahedra, no Jacobian is ever
+ * negative, whatever the solid, and threads change nothing. The integrals and Jacobians here are by the shape functions, at
+ * points. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -80,8 +81,8 @@ static void converges(const char *expression, double volume, double coarse, doub
   laves_context *context = laves_context_create(NULL);
   const errors a = errors_of(context, expression, volume, coarse), b = errors_of(context, expression, volume, fine);
   const double by = log(coarse / fine), straight = log(a.straight / b.straight) / by, curved = log(a.curved / b.curved) / by;
-  print_message("%s, size %g to %g: volume off by %.2g to %.2g, order %.2f; of second order %.2g to %.2g, order %.2f\n", expression,
-                coarse, fine, a.straight, b.straight, straight, a.curved, b.curved, curved);
+  print_message("%s, size %g to %g: volume off by %.2g to %.2g, order %.2f; of second order %.2g to %.2g, order %.2f\n",
+                expression, coarse, fine, a.straight, b.straight, straight, a.curved, b.curved, curved);
   assert_true(straight > 1.7 && straight < 2.6);
   assert_true(curved > 3.5);
   assert_true(b.curved < b.straight / 100);

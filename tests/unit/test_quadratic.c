@@ -4,6 +4,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -181,12 +182,12 @@ static void what_cannot_be_is_refused(void **state) {
 }
 
 static const char *const file_names[LAVES_FORMAT_COUNT] = {
-    [LAVES_FORMAT_VTU] = "a.vtu",       [LAVES_FORMAT_GMSH22] = "a22.msh", [LAVES_FORMAT_GMSH41] = "a41.msh",
-    [LAVES_FORMAT_MEDIT] = "a.mesh",    [LAVES_FORMAT_TETGEN] = "a.node",  [LAVES_FORMAT_VTKHDF] = "a.vtkhdf",
-    [LAVES_FORMAT_VTK] = "a.vtk",       [LAVES_FORMAT_XDMF] = "a.xdmf",    [LAVES_FORMAT_EXODUS] = "a.exo",
-    [LAVES_FORMAT_ABAQUS] = "a.inp",    [LAVES_FORMAT_NASTRAN] = "a.bdf",  [LAVES_FORMAT_NPZ] = "a.npz",
-    [LAVES_FORMAT_DMTET] = "grid.npz",  [LAVES_FORMAT_STL] = "a.stl",      [LAVES_FORMAT_OBJ] = "a.obj",
-    [LAVES_FORMAT_PLY] = "a.ply",       [LAVES_FORMAT_OFF] = "a.off",
+    [LAVES_FORMAT_VTU] = "a.vtu",      [LAVES_FORMAT_GMSH22] = "a22.msh", [LAVES_FORMAT_GMSH41] = "a41.msh",
+    [LAVES_FORMAT_MEDIT] = "a.mesh",   [LAVES_FORMAT_TETGEN] = "a.node",  [LAVES_FORMAT_VTKHDF] = "a.vtkhdf",
+    [LAVES_FORMAT_VTK] = "a.vtk",      [LAVES_FORMAT_XDMF] = "a.xdmf",    [LAVES_FORMAT_EXODUS] = "a.exo",
+    [LAVES_FORMAT_ABAQUS] = "a.inp",   [LAVES_FORMAT_NASTRAN] = "a.bdf",  [LAVES_FORMAT_NPZ] = "a.npz",
+    [LAVES_FORMAT_DMTET] = "grid.npz", [LAVES_FORMAT_STL] = "a.stl",      [LAVES_FORMAT_OBJ] = "a.obj",
+    [LAVES_FORMAT_PLY] = "a.ply",      [LAVES_FORMAT_OFF] = "a.off",
 };
 
 /* Every format writes the nodes or says that it cannot; what is read again are the corners, as they were. */
@@ -222,12 +223,9 @@ static void every_format_writes_or_refuses(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_straight_one_has_all),
-      cmocka_unit_test(a_node_that_slides),
-      cmocka_unit_test(the_bound_is_below_all_samples),
-      cmocka_unit_test(nodes_are_numbered_by_their_edges),
-      cmocka_unit_test(a_linear_mesh_answers_too),
-      cmocka_unit_test(what_cannot_be_is_refused),
+      cmocka_unit_test(the_straight_one_has_all),       cmocka_unit_test(a_node_that_slides),
+      cmocka_unit_test(the_bound_is_below_all_samples), cmocka_unit_test(nodes_are_numbered_by_their_edges),
+      cmocka_unit_test(a_linear_mesh_answers_too),      cmocka_unit_test(what_cannot_be_is_refused),
       cmocka_unit_test(every_format_writes_or_refuses),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
