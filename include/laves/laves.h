@@ -1093,8 +1093,8 @@ LAVES_API laves_format laves_format_from_name(const char *name);
 LAVES_API laves_format laves_format_from_path(const char *path);
 /// Whether a streamed mesh (laves_options.streamed) can be written in it: VTU, Gmsh's, VTKHDF, legacy VTK, XDMF and NPZ.
 LAVES_API bool laves_format_streams(laves_format format);
-/// Whether a mesh of second order (laves_mesh_curve()) can be written in it: VTU, Gmsh's, VTKHDF, legacy VTK, XDMF, Exodus,
-/// Abaqus, Nastran and NPZ.
+/// Whether a mesh of second order (laves_mesh_curve()) can be written in it: VTU, Gmsh's, Medit, VTKHDF, legacy VTK, XDMF,
+/// Exodus, Abaqus, Nastran and NPZ.
 LAVES_API bool laves_format_is_quadratic(laves_format format);
 
 /// Writes a mesh, whole or not at all: a temporary file beside the target is renamed when complete.

@@ -164,8 +164,8 @@ laves_result laves_mesh_write(laves_context *context, const laves_mesh *mesh, co
   if (held != LAVES_OK) return held;
   if (mesh->quadratic && !laves_format_is_quadratic(format))
     return laves__fail(error, LAVES_ERROR_OPTION,
-                       "cannot write '%s': %s files of ours have no elements of second order; choose VTU, Gmsh, Abaqus, Exodus, "
-                       "Nastran, VTKHDF, VTK, XDMF or NPZ",
+                       "cannot write '%s': %s files of ours have no elements of second order; choose VTU, Gmsh, Medit, Abaqus, "
+                       "Exodus, Nastran, VTKHDF, VTK, XDMF or NPZ",
                        path, laves_format_name(format));
   laves__progress_reset(context);
   const laves_mesh nodes = with_nodes(mesh);

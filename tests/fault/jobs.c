@@ -600,6 +600,7 @@ const job jobs[] = {
     {"curve and write Abaqus", curve, "x.inp"},
     {"curve and write Exodus", curve, "x.exo"},
     {"curve and write Nastran", curve, "x.bdf"},
+    {"curve and write Medit", curve, "x.meshb"},
     {"read VTU, text", read_mesh, "tagged_text.vtu"},
     {"read VTU, compressed", read_mesh, "tagged.vtu"},
     {"read Gmsh 2.2", read_mesh, "tagged22.msh"},
