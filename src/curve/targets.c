@@ -8,8 +8,10 @@ static const char phase[] = "curve";
 /* No target is further from an edge's middle than this share of its length: an arc of more than a half circle is none to follow.
  */
 static const double reach_share = 0.5;
-/* Ends of an edge along a crease are this near to it, as a share of the edge's length. */
-static const double crease_share = 1e-3;
+/* Ends of an edge along a crease are this near to it, as a share of the edge's length: a vertex on a drawn line is on the
+ * surface, from which the line's own stretches are a little off. A vertex that is so near and not on it would have made a sliver.
+ */
+static const double crease_share = 0.02;
 
 /* Edges that are projected in one call. */
 enum { BATCH = 64 };
@@ -34,6 +36,13 @@ static void set_target(const search *s, laves__bent *b, laves__vec3 foot, bool o
   b->on_crease = b->found && on_crease;
 }
 
+/* A place on a line within one patch, put on the surface. */
+static laves__vec3 on_surface(const search *s, laves__vec3 place, double length) {
+  uint32_t hint = LAVES__NO_HINT;
+  laves__vec3 foot, normal;
+  return s->oracle->project(s->oracle->self, place, crease_share * length, &hint, &foot, &normal) ? foot : place;
+}
+
 /* Whether both ends of an edge between two patches are on a crease between them, and the foot of its middle there. */
 static bool try_crease(const search *s, laves__bent *b, double length) {
   laves__vec3 foot;
@@ -46,6 +55,7 @@ static bool try_crease(const search *s, laves__bent *b, double length) {
   if (laves__crease_between(s->features, b->patch[0], &b->patch[1], 1, local(s, b->middle), reach_share * length, &foot) ==
       LAVES__NO_FEATURE)
     return true; /* it keeps to its middle */
+  if (laves__patches_join(s->features, b->patch[0], b->patch[1])) foot = on_surface(s, foot, length);
   set_target(s, b, foot, true);
   return true;
 }
@@ -63,7 +73,7 @@ static bool try_seam(const search *s, laves__bent *b, double length) {
   /* A chord between two turns of a line is not on it: its middle is further from the line than an arc bulges. */
   if (!laves__crease_project(s->features, crease[0], local(s, b->middle), reach_share / 2 * length, &foot, &tangent))
     return false;
-  set_target(s, b, foot, true);
+  set_target(s, b, on_surface(s, foot, length), true);
   return true;
 }
 
@@ -86,7 +96,7 @@ static void find_on_features(const search *s, laves__bent *b) {
 }
 
 static void find_on_surface(const search *s, laves__bent *b, size_t count) {
-  laves__vec3 points[BATCH];
+  laves__vec3 points[BATCH] = {{0}};
   laves__projection answers[BATCH];
   for (size_t i = 0; i < count; i++) {
     points[i] = local(s, b[i].middle);
