@@ -10,6 +10,7 @@
 #include "input.h"
 #include "output.h"
 #include "report.h"
+#include "second_order.h"
 #include "session.h"
 #include "sizing.h"
 #include "statement.h"
@@ -32,6 +33,7 @@ typedef struct mesh_run {
   laves_certificate certificate;
   bool has_certificate;
   double certify_seconds;
+  second_order curved;
   report_outcome page;
 } mesh_run;
 
@@ -97,6 +99,7 @@ static void say_stages(const mesh_run *all) {
              text_seconds(&cpu, all->report.stages[i].cpu_seconds));
   }
   text_say("  certify      %10s", text_seconds(&wall, all->certify_seconds));
+  if (all->curved.seconds > 0) text_say("  curve        %10s", text_seconds(&wall, all->curved.seconds));
   text_say("  write        %10s", text_seconds(&wall, all->plan.seconds));
 }
 
@@ -135,6 +138,7 @@ static void say_mesh(const session *run, const mesh_run *all) {
     statement_say(&all->certificate, false);
   }
   say_relaxed(all);
+  if (run->given->order == 2) second_order_say(&all->curved);
   if (run->given->verbose) say_stages(all);
   for (int i = 0; i < all->report.warning_count; ++i) text_warning("%s", all->report.warnings[i]);
   warn_of_volume(all);
@@ -158,7 +162,8 @@ static laves_result mesh_steps(session *run, mesh_run *all) {
   const settings *given = run->given;
   char fallback[PATH_CAPACITY];
   input_default_output(given->input, given->format, fallback, sizeof fallback);
-  laves_result result = outputs_plan(run, fallback, given->input, &all->plan);
+  laves_result result = second_order_check(run);
+  if (result == LAVES_OK) result = outputs_plan(run, fallback, given->input, &all->plan);
   if (result == LAVES_OK) result = outputs_plan_certificate(run, given->input, &all->plan);
   if (result == LAVES_OK && given->report) result = outputs_check_report(run, given->input, &all->plan);
   if (result == LAVES_OK) result = sizing_open(run, &all->sizing);
@@ -174,6 +179,8 @@ static laves_result mesh_steps(session *run, mesh_run *all) {
   const bool missed = wish_missed(given, all);
   result = LAVES_OK;
   if (all->plan.certificate[0] || given->report) result = certify(run, all);
+  if (result == LAVES_OK && given->order == 2)
+    result = second_order_make(run, all->mesh, all->in.domain, &all->options, &all->report, &all->curved);
   if (result == LAVES_OK) result = outputs_write(run, all->mesh, all->has_certificate ? &all->certificate : NULL, &all->plan);
   if (result == LAVES_OK && given->report) result = write_report_page(run, all);
   if (result == LAVES_OK && session_speaks(run)) say_mesh(run, all);
@@ -210,6 +217,7 @@ static void write_times(json *out, const session *run, const mesh_run *all) {
   json_number(out, "read", all->in.seconds);
   write_stages(out, &all->report, false);
   json_number(out, "check", all->certify_seconds);
+  if (run->given->order == 2) json_number(out, "curve", all->curved.seconds);
   json_number(out, "write", all->plan.seconds);
   json_number(out, "total", progress_now() - run->start);
   json_close(out);
@@ -235,6 +243,7 @@ static void write_options(json *out, const settings *given, const laves_options 
   json_text(out, "regions", options->regions == LAVES_REGIONS_PARTS ? "parts" : "none");
   json_boolean(out, "face_sources", options->face_sources);
   json_boolean(out, "streamed", options->streamed);
+  json_integer(out, "order", given->order);
   sizing_write_json(out, given);
   features_write_json(out, given);
   json_close(out);
@@ -310,6 +319,7 @@ static void mesh_json(json *out, const session *run, const void *facts) {
     json_integer(out, "vertices", (int64_t)laves_mesh_vertex_count(all->mesh));
     json_integer(out, "faces", (int64_t)laves_mesh_face_count(all->mesh));
   }
+  if (all->curved.made) second_order_write_json(out, &all->curved);
   if (all->mesh) groups_write_json(out, all->mesh);
   outputs_write_json(out, &all->plan);
   json_text(out, "certificate", all->plan.certificate_bytes > 0 ? all->plan.certificate : NULL);

@@ -246,6 +246,9 @@ const option option_rows[] = {
      "where parts are nested (docs/formats.md)"},
     {"face-sources", 0, MESH, IN_FILES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(face_sources), 0,
      "write for each boundary triangle the nearest face of the input surface, from 0 (source_face in VTU)"},
+    {"order", 0, MESH, IN_FILES, OPTION_COUNT, "1|2", NULL, false, 1, 2, "1", MEMBER(order), 0,
+     "2: tetrahedra of ten nodes, those on edges of the boundary on the surface (docs/quadratic.md): VTU, Gmsh, Medit, Abaqus, "
+     "Exodus, Nastran, VTKHDF, VTK, XDMF, NPZ"},
     {"stream", 0, MESH, IN_FILES, OPTION_FLAG, NULL, NULL, false, 0, 0, NULL, MEMBER(stream), 0,
      "make points and tetrahedra while they are written, for meshes larger than memory (docs/streaming.md): VTU, Gmsh, VTKHDF, "
      "VTK, XDMF, "

@@ -383,6 +383,7 @@ static options_outcome take_next(parser *state, bool *options_ended) {
 options_outcome options_parse(const command *about, int count, char **words, settings *given) {
   *given = (settings){.command = about->name,
                       .volume_length = -1,
+                      .order = 1,
                       .guarantee = 14.4,
                       .winding = 0.5,
                       .close_holes = true,

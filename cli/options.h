@@ -43,6 +43,7 @@ typedef struct settings {
   option_alignment alignment;
   bool no_improve, ascii, quiet, verbose;
   bool face_sources;
+  int64_t order; /* 1 or 2 */
   laves_regions regions;
   option_numbers window; /* lowest, highest dihedral angle */
   double volume_length;  /* negative: not given */

@@ -97,6 +97,13 @@ static laves_result add(session *run, const char *path, bool surface_only, outpu
                         "'%.200s' cannot be streamed: %s files need the mesh in memory; use .vtu or .msh, or leave --stream away",
                         path, laves_format_name(format));
   }
+  if (run->given->order == 2 && !laves_format_is_quadratic(format)) {
+    return session_fail(
+        run, LAVES_ERROR_OPTION,
+        "'%.200s' cannot be of order 2: %s files of ours have no elements of second order; docs/quadratic.md lists "
+        "those that have",
+        path, laves_format_name(format));
+  }
   for (int i = 0; i < plan->count; ++i) {
     if (is_same_place(plan->items[i].path, path)) return session_fail(run, LAVES_ERROR_OPTION, "'%.200s' is named twice", path);
   }

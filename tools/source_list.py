@@ -30,6 +30,7 @@ FOLDERS = {
     "stuff": "The same by warping and cutting, with a proved window",
     "assemble": "From labelled bricks to arrays",
     "improve": "Better angles in the boundary layer",
+    "curve": "Nodes of second order, on the surface",
     "certify": "Checks by code that shares nothing with the stages before",
     "io": "Files",
 }

@@ -17,7 +17,7 @@ from ._library import lib as _lib, path_of as _path_of, program_path, text_of as
 from ._mesh import Certificate, Mesh
 from ._options import fill as _fill
 from ._quality import Quality
-from ._records import Check, DomainInfo, Expectation, FeatureCheck, FileCheck, ImproveReport, Place, Report
+from ._records import Check, CurveReport, DomainInfo, Expectation, FeatureCheck, FileCheck, ImproveReport, Place, Report
 from ._session import Deadline as _Deadline, Session as _Session
 from .errors import (CancelledError, Error, InputError, InternalError, MissingFileError, OptionError, OutOfMemoryError, TargetMissed,
                      TimeoutError, WriteError)
@@ -26,7 +26,7 @@ __version__: str = _lib.laves_version().decode()
 
 __all__ = ["mesh", "info", "estimate", "check", "check_file", "improve", "read", "tiling", "formats", "format_of", "solids", "Mesh",
            "Domain", "Defects", "Sizing", "Features", "Certificate", "Quality", "Check", "DomainInfo", "Expectation",
-           "FeatureCheck", "FileCheck", "ImproveReport", "Place", "Report", "Error", "OptionError", "InputError", "MissingFileError",
+           "CurveReport", "FeatureCheck", "FileCheck", "ImproveReport", "Place", "Report", "Error", "OptionError", "InputError", "MissingFileError",
            "OutOfMemoryError", "WriteError", "CancelledError", "TimeoutError", "InternalError", "TargetMissed", "program_path",
            "__version__"]
 

@@ -375,6 +375,38 @@ class laves_expectation(Structure):
     ]
 
 
+class laves_curve_options(Structure):
+    _fields_ = [
+        ("min_jacobian", c_double),
+        ("distances", c_bool),
+        ("feature_angle", c_double),
+        ("feature_tags", c_bool),
+        ("features", c_void_p),
+        ("feature_size", c_double),
+        ("cookie", c_uint32),
+    ]
+
+
+class laves_curve_report(Structure):
+    _fields_ = [
+        ("nodes", c_size_t),
+        ("edges", c_size_t),
+        ("boundary_edges", c_size_t),
+        ("on_surface", c_size_t),
+        ("moved_back", c_size_t),
+        ("straightened", c_size_t),
+        ("unreached", c_size_t),
+        ("on_crease", c_size_t),
+        ("least_jacobian", c_double),
+        ("least_tet", c_int64),
+        ("has_distance", c_bool),
+        ("straight_max", c_double),
+        ("straight_mean", c_double),
+        ("curved_max", c_double),
+        ("curved_mean", c_double),
+    ]
+
+
 class laves_statistic(Structure):
     _fields_ = [
         ("min", c_double),
@@ -718,6 +750,13 @@ FUNCTIONS = {
     "laves_mesh_lattice_tet_count": (c_size_t, [c_void_p]),
     "laves_mesh_group_name": (c_char_p, [c_void_p, c_int, c_int32]),
     "laves_mesh_hash": (None, [c_void_p, c_char_p]),
+    "laves_curve_options_default": (laves_curve_options, []),
+    "laves_mesh_curve": (c_int, [c_void_p, c_void_p, c_void_p, POINTER(laves_curve_options), POINTER(laves_curve_report), POINTER(laves_error)]),
+    "laves_mesh_order": (c_int, [c_void_p]),
+    "laves_mesh_node_count": (c_size_t, [c_void_p]),
+    "laves_mesh_node_points": (POINTER(c_double), [c_void_p]),
+    "laves_mesh_tet_nodes": (POINTER(c_int32), [c_void_p]),
+    "laves_mesh_face_nodes": (POINTER(c_int32), [c_void_p]),
     "laves_check_mesh": (c_int, [c_void_p, c_void_p, c_void_p, POINTER(laves_check), POINTER(laves_error)]),
     "laves_check_window": (c_int, [c_void_p, c_void_p, c_void_p, c_double, c_double, c_double, POINTER(laves_place), c_size_t, POINTER(c_size_t), POINTER(laves_error)]),
     "laves_check_distance": (c_int, [c_void_p, c_void_p, c_void_p, c_double, POINTER(laves_place), c_size_t, POINTER(c_size_t), POINTER(laves_error)]),
@@ -743,6 +782,7 @@ FUNCTIONS = {
     "laves_format_from_name": (c_int, [c_char_p]),
     "laves_format_from_path": (c_int, [c_char_p]),
     "laves_format_streams": (c_bool, [c_int]),
+    "laves_format_is_quadratic": (c_bool, [c_int]),
     "laves_mesh_write": (c_int, [c_void_p, c_void_p, c_char_p, POINTER(laves_write_options), POINTER(laves_error)]),
     "laves_mesh_read": (c_int, [c_void_p, c_char_p, POINTER(c_void_p), POINTER(laves_error)]),
 }

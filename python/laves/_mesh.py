@@ -15,7 +15,7 @@ from ._library import lib, path_of, text_of
 from ._options import enum_in, fill, mesh_options
 from ._picture import html_of, picture_of
 from ._quality import Quality
-from ._records import Check, FeatureCheck, ImproveReport, Place, Record, Report
+from ._records import Check, CurveReport, FeatureCheck, ImproveReport, Place, Record, Report
 from ._session import Handle, MadeByCall, Session
 
 
@@ -215,6 +215,53 @@ class Mesh:
         for first in range(0, self.tet_count, count):
             yield self.read_tets(first, min(count, self.tet_count - first))
 
+    # ---- second order ----
+
+    def curve(self, domain: "Domain | None" = None, *, straight: bool = False, features=None, progress=None,
+              timeout: "float | None" = None, **options) -> CurveReport:
+        """Gives each edge a node, so that tets have ten and faces six: `nodes`, `tet_nodes`, `face_nodes`; write() writes them. Those
+        of the boundary stand on the domain's surface (None: the mesh's own domain) where that keeps all Jacobians positive.
+        straight: all at the middle of their edge, which needs no domain. Once for each mesh; `points`, `tets` and all checks stay as
+        they are. Options as in laves_curve_options: min_jacobian, distances, feature_angle, feature_tags, feature_size; what they
+        leave out is as the mesh was made."""
+        if self.order != 1:
+            raise errors.OptionError("the mesh is of second order already")
+        domain = None if straight else self._domain_or_own(domain)
+        wished = lib.laves_curve_options_default()
+        if self._options is not None:
+            made = self._options[0]
+            wished.feature_angle, wished.feature_tags, wished.features = made.feature_angle, made.feature_tags, made.features
+            wished.feature_size = self._raw_report.feature_size if self._raw_report is not None else 0
+        fill(wished, options, "curve()")
+        if features is not None:
+            wished.features = features.handle.pointer
+        found = _header.laves_curve_report()
+        self._call(lib.laves_mesh_curve, _pointer(domain), ctypes.byref(wished), ctypes.byref(found), domain=domain,
+                   progress=progress, timeout=timeout)
+        return CurveReport(found)
+
+    @property
+    def order(self) -> int:
+        """1, or 2 after curve()."""
+        return lib.laves_mesh_order(self.handle.pointer)
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """float64 (n, 3): the vertices, then the nodes on edges; of a mesh of first order `points`."""
+        self._held("points", "read_points")
+        return self._view(lib.laves_mesh_node_points, np.float64, lib.laves_mesh_node_count(self.handle.pointer), 3)
+
+    @property
+    def tet_nodes(self) -> np.ndarray:
+        """int32 (m, 10): four corners, then the nodes on edges 01, 12, 02, 03, 13, 23; of a mesh of first order `tets`."""
+        self._held("tets", "read_tets")
+        return self._view(lib.laves_mesh_tet_nodes, np.int32, self.tet_count, 10 if self.order == 2 else 4)
+
+    @property
+    def face_nodes(self) -> np.ndarray:
+        """int32 (k, 6): three corners, then the nodes on edges 01, 12, 02; of a mesh of first order `faces`."""
+        return self._view(lib.laves_mesh_face_nodes, np.int32, self.face_count, 6 if self.order == 2 else 3)
+
     # ---- checks ----
 
     def _call(self, function, *arguments, domain=None, progress=None, timeout=None):
@@ -339,19 +386,21 @@ class Mesh:
         self._call(lib.laves_mesh_write, path_of(path), ctypes.byref(wished), progress=progress, timeout=timeout)
 
     def to_meshio(self):
-        """A meshio.Mesh with cells "tetra" and "triangle", and their numbers as cell data "region" and "tag"."""
+        """A meshio.Mesh with cells "tetra" and "triangle" ("tetra10" and "triangle6" of second order), and their numbers as cell data "region" and "tag"."""
         import meshio
-        cells = [("tetra", self.tets), ("triangle", self.faces)]
+        kinds = ("tetra", "triangle") if self.order == 1 else ("tetra10", "triangle6")
+        cells = [(kinds[0], self.tet_nodes), (kinds[1], self.face_nodes)]
         regions, tags = self.regions, self.face_tags
         data = {"region": [regions, np.zeros(len(tags), np.int32)], "tag": [np.zeros(len(regions), np.int32), tags]}
         names = {name: np.array([tag, 2]) for name, tag in self.face_groups.items()}
         names.update({name: np.array([tag, 3]) for name, tag in self.region_groups.items()})
-        return meshio.Mesh(self.points, cells, cell_data=data, field_data=names)
+        return meshio.Mesh(self.nodes, cells, cell_data=data, field_data=names)
 
     def to_pyvista(self):
         """A pyvista.UnstructuredGrid of the tets, with cell data "region"; its points are a view where PyVista allows."""
         import pyvista
-        grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: self.tets}, self.points)
+        kind = pyvista.CellType.TETRA if self.order == 1 else pyvista.CellType.QUADRATIC_TETRA
+        grid = pyvista.UnstructuredGrid({kind: self.tet_nodes}, self.nodes)
         grid.cell_data["region"] = self.regions
         return grid
 

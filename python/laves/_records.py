@@ -62,6 +62,10 @@ class FeatureCheck(Record):
     """How well a mesh keeps the creases and corners of a solid: laves_feature_check, and `places`, the worst first."""
 
 
+class CurveReport(Record):
+    """What giving a mesh nodes of second order did: laves_curve_report."""
+
+
 class DomainInfo(Record):
     """What a solid is: laves_domain_info, and `tags`, the names of its parts."""
 

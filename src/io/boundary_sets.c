@@ -75,8 +75,8 @@ static void stamp(const laves_mesh *mesh, laves__boundary_sets *sets, uint32_t *
   for (size_t tag = 0; tag < sets->tags.count; tag++) {
     sets->first[tag] = count;
     for (size_t i = sets->tags.first[tag]; i < sets->tags.first[tag + 1]; i++) {
-      const int32_t *face = mesh->faces[laves__tag_order_item(&sets->tags, i)];
-      for (int j = 0; j < 3; j++) {
+      const int32_t *face = laves__face_nodes(mesh, laves__tag_order_item(&sets->tags, i));
+      for (int j = 0; j < laves__face_width(mesh); j++) {
         if (stamps[face[j]] == tag + 1) continue;
         stamps[face[j]] = (uint32_t)tag + 1;
         if (list) list[count] = face[j];

@@ -48,6 +48,11 @@ bool laves_format_streams(laves_format format) {
   }
 }
 
+bool laves_format_is_quadratic(laves_format format) {
+  return laves_format_streams(format) || format == LAVES_FORMAT_EXODUS || format == LAVES_FORMAT_ABAQUS ||
+         format == LAVES_FORMAT_NASTRAN || format == LAVES_FORMAT_MEDIT;
+}
+
 laves_format laves_format_from_path(const char *path) {
   const char *dot = path ? strrchr(path, '.') : NULL;
   for (size_t i = 0; dot && i < LAVES__COUNT_OF(extensions); i++)

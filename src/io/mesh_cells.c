@@ -1,7 +1,21 @@
-/* Names of groups as field data. */
+/* Corners of cells, and names of groups as field data. */
 #include "io/mesh_cells.h"
 
 #include <string.h>
+
+void laves__cell_pack_corners(const laves_mesh *mesh, size_t begin, size_t end, int32_t *out) {
+  const size_t tet_corners = laves__cell_tet_corners(mesh), last = end < tet_corners ? end : tet_corners;
+  if (begin < last && mesh->quadratic) {
+    memcpy(out, *mesh->quadratic->tets + begin, (last - begin) * sizeof *out);
+  } else if (begin < last) {
+    const bool made = laves__mesh_corners(mesh, begin, last, out);
+    LAVES_ASSERT(made);
+    (void)made;
+  }
+  const size_t first = begin > tet_corners ? begin : tet_corners;
+  const int32_t *faces = mesh->quadratic ? *mesh->quadratic->faces : *mesh->faces;
+  if (first < end) memcpy(out + (first - begin), faces + (first - tet_corners), (end - first) * sizeof *out);
+}
 
 enum { NAMES_MAX = 10000 };
 

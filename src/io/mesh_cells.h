@@ -5,8 +5,8 @@
 
 #include "mesh/mesh.h"
 
-/* VTK's numbers of cell types, and what the cell data "class" tells. */
-enum { LAVES__CELL_TRIANGLE = 5, LAVES__CELL_TET = 10 };
+/* VTK's numbers of cell types, of first and second order, and what the cell data "class" tells. */
+enum { LAVES__CELL_TRIANGLE = 5, LAVES__CELL_TET = 10, LAVES__CELL_TRIANGLE_2 = 22, LAVES__CELL_TET_2 = 24 };
 enum { LAVES__CLASS_TILE = 0, LAVES__CLASS_LAYER = 1, LAVES__CLASS_FACE = 2 };
 
 static inline size_t laves__cell_faces(const laves_mesh *mesh) {
@@ -15,16 +15,23 @@ static inline size_t laves__cell_faces(const laves_mesh *mesh) {
 
 static inline size_t laves__cell_count(const laves_mesh *mesh) { return mesh->tet_count + laves__cell_faces(mesh); }
 
-/* Corners of all cells together. */
-static inline size_t laves__cell_corners(const laves_mesh *mesh) { return 4 * mesh->tet_count + 3 * laves__cell_faces(mesh); }
+/* Numbers of all tets, and of all cells, together: corners, and with them the other nodes of a mesh of second order. */
+static inline size_t laves__cell_tet_corners(const laves_mesh *mesh) { return (size_t)laves__tet_width(mesh) * mesh->tet_count; }
+static inline size_t laves__cell_corners(const laves_mesh *mesh) {
+  return laves__cell_tet_corners(mesh) + (size_t)laves__face_width(mesh) * laves__cell_faces(mesh);
+}
+/* Numbers [begin, end) of these. */
+void laves__cell_pack_corners(const laves_mesh *mesh, size_t begin, size_t end, int32_t *out);
 
 /* Where the corners of cell i start; i may be the number of cells. */
 static inline uint64_t laves__cell_offset(const laves_mesh *mesh, size_t i) {
   const size_t tets = mesh->tet_count;
-  return i <= tets ? 4 * (uint64_t)i : 4 * (uint64_t)tets + 3 * (uint64_t)(i - tets);
+  const uint64_t tet = (uint64_t)laves__tet_width(mesh), face = (uint64_t)laves__face_width(mesh);
+  return i <= tets ? tet * i : tet * tets + face * (i - tets);
 }
 
 static inline uint8_t laves__cell_type(const laves_mesh *mesh, size_t i) {
+  if (mesh->quadratic) return i < mesh->tet_count ? LAVES__CELL_TET_2 : LAVES__CELL_TRIANGLE_2;
   return i < mesh->tet_count ? LAVES__CELL_TET : LAVES__CELL_TRIANGLE;
 }
 

@@ -7,7 +7,7 @@
 /* Items are had in pieces of so many. */
 enum { LAVES__PIECE = 512 };
 
-/* For items in ascending order; zeroed but for the mesh. */
+/* For items in ascending order; zeroed but for the mesh. Of a mesh of second order tets have ten numbers. */
 typedef struct laves__point_reader {
   const laves_mesh *mesh;
   size_t first, end; /* the points in `piece` */
@@ -35,7 +35,7 @@ static inline laves__vec3 laves__point_at(laves__point_reader *r, size_t i) {
 }
 
 static inline const int32_t *laves__tet_at(laves__tet_reader *r, size_t i) {
-  if (r->mesh->tets) return r->mesh->tets[i];
+  if (r->mesh->tets) return laves__tet_nodes(r->mesh, i);
   if (i < r->first || i >= r->end) {
     r->first = i;
     r->end = laves__piece_end(i, r->mesh->tet_count);

@@ -11,8 +11,12 @@ size_t laves__pack_points(const void *user, size_t begin, size_t end, char *byte
 }
 
 size_t laves__pack_tets(const void *user, size_t begin, size_t end, char *bytes) {
-  laves__mesh_tets(user, begin, end, (int32_t(*)[4])(void *)bytes);
-  return (end - begin) * 16;
+  const laves_mesh *mesh = user;
+  if (mesh->quadratic)
+    memcpy(bytes, mesh->quadratic->tets + begin, (end - begin) * sizeof *mesh->quadratic->tets);
+  else
+    laves__mesh_tets(mesh, begin, end, (int32_t(*)[4])(void *)bytes);
+  return (end - begin) * 4 * (size_t)laves__tet_width(mesh);
 }
 
 size_t laves__pack_cell_regions(const void *user, size_t begin, size_t end, char *bytes) {

@@ -1,7 +1,7 @@
 /* Abaqus's input file, as CalculiX reads it too: the mesh without materials, steps and loads, which the user adds.
  *
  *   *NODE, NSET=Nall                  all vertices
- *   *ELEMENT, TYPE=C3D4, ELSET=core   the tetrahedra of a region
+ *   *ELEMENT, TYPE=C3D4, ELSET=core   the tetrahedra of a region; C3D10 of a mesh of second order
  *   *NSET, NSET=inlet                 the vertices of a face tag
  *   *ELSET, ELSET=inlet_S1            the tetrahedra whose first face has the tag, for S1 .. S4
  *   *SURFACE, NAME=inlet              the faces of the tag
@@ -49,7 +49,8 @@ static size_t put_elements(const void *user, size_t begin, size_t end, char *byt
   for (size_t i = begin; i < end; i++) {
     const size_t tet = laves__tag_order_item(e->order, e->first + i);
     text = laves__put_integer(text, (int64_t)tet + 1);
-    for (int j = 0; j < 4; j++) text = laves__put_integer(put_comma(text), (int64_t)e->mesh->tets[tet][j] + 1);
+    const int32_t *nodes = laves__tet_nodes(e->mesh, tet);
+    for (int j = 0; j < laves__tet_width(e->mesh); j++) text = laves__put_integer(put_comma(text), (int64_t)nodes[j] + 1);
     *text++ = '\n';
   }
   return (size_t)(text - bytes);
@@ -83,8 +84,8 @@ static void write_list(laves__output *out, const int32_t *numbers, size_t count)
 static void write_regions(laves__output *out, const laves_mesh *mesh, const laves__tag_order *order, laves__label *labels) {
   for (size_t i = 0; i < order->count; i++) {
     const elements e = {mesh, order, order->first[i]};
-    laves__output_printf(out, "*ELEMENT, TYPE=C3D4, ELSET=%s\n", labels[i]);
-    laves__output_items(out, order->first[i + 1] - order->first[i], 5 * (LAVES__INTEGER_TEXT_MAX + 2), put_elements, &e);
+    laves__output_printf(out, "*ELEMENT, TYPE=%s, ELSET=%s\n", mesh->quadratic ? "C3D10" : "C3D4", labels[i]);
+    laves__output_items(out, order->first[i + 1] - order->first[i], 11 * (LAVES__INTEGER_TEXT_MAX + 2), put_elements, &e);
   }
 }
 

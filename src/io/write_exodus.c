@@ -88,11 +88,12 @@ static size_t pack_set_names(const void *user, size_t begin, size_t end, char *b
 static size_t pack_block(const void *user, size_t begin, size_t end, char *bytes) {
   const set *s = user;
   const model *m = s->model;
+  const int width = laves__tet_width(m->mesh);
   for (size_t i = begin; i < end; i++) {
-    const int32_t *t = m->mesh->tets[laves__tag_order_item(&m->regions, m->regions.first[s->index] + i)];
-    for (int j = 0; j < 4; j++) bytes += put_int(bytes, (int64_t)t[j] + 1);
+    const int32_t *t = laves__tet_nodes(m->mesh, laves__tag_order_item(&m->regions, m->regions.first[s->index] + i));
+    for (int j = 0; j < width; j++) bytes += put_int(bytes, (int64_t)t[j] + 1);
   }
-  return (end - begin) * 16;
+  return (end - begin) * 4 * (size_t)width;
 }
 
 static size_t pack_numbers(const void *user, size_t begin, size_t end, char *bytes) {
@@ -143,7 +144,7 @@ static void add_groups(laves__netcdf_file *file, const model *m, const laves__ta
 
 static void add_blocks(laves__netcdf_file *file, const model *m, int elements, int name_bytes) {
   static const char *const names[] = {"eb_status", "eb_prop1", "eb_names"};
-  const laves__netcdf_attribute type = {.name = "elem_type", .text = "TETRA"};
+  const laves__netcdf_attribute type = {.name = "elem_type", .text = m->mesh->quadratic ? "TETRA10" : "TETRA"};
   const laves__tag_order *order = &m->regions;
   const int blocks = laves__netcdf_add_dimension(file, "num_el_blk", 0, order->count);
   add_groups(file, m, order, blocks, name_bytes, names, pack_block_names);
@@ -151,7 +152,7 @@ static void add_blocks(laves__netcdf_file *file, const model *m, int elements, i
     laves__netcdf_add_variable(file, "elem_num_map", 0, LAVES__NETCDF_INT, elements, -1, no_attribute(), pack_numbers, order);
   for (size_t i = 0; i < order->count; i++) {
     const int count = laves__netcdf_add_dimension(file, "num_el_in_blk", i + 1, order->first[i + 1] - order->first[i]);
-    const int corners = laves__netcdf_add_dimension(file, "num_nod_per_el", i + 1, 4);
+    const int corners = laves__netcdf_add_dimension(file, "num_nod_per_el", i + 1, (uint64_t)laves__tet_width(m->mesh));
     laves__netcdf_add_variable(file, "connect", i + 1, LAVES__NETCDF_INT, count, corners, type, pack_block, &m->sets[i]);
   }
 }

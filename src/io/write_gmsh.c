@@ -3,6 +3,7 @@
  * Boundary triangles and then tetrahedra, numbered from 1; each face tag is a surface and each region a volume with a named
  * physical group of the same number. Gmsh wants positive numbers: where a tag is zero or less, the tags of that dimension
  * are numbered 1, 2, ... in ascending order instead. Elements stand in blocks of equal tag; their numbers tell the mesh's order.
+ * Of a mesh of second order, triangles have six nodes and tetrahedra ten, the last two in Gmsh's own order.
  * Source: Gmsh reference manual, "MSH file format" and "MSH file format version 2 (Legacy)". */
 #include <string.h>
 
@@ -10,7 +11,9 @@
 #include "io/write_mesh.h"
 #include "io/write_text.h"
 
-enum { ELEMENT_TRIANGLE = 2, ELEMENT_TET = 4 };
+enum { ELEMENT_TRIANGLE = 2, ELEMENT_TET = 4, ELEMENT_TRIANGLE_2 = 9, ELEMENT_TET_2 = 11 };
+/* Numbers of an element at most. */
+enum { NODES_MAX = 10 };
 
 /* The elements of one dimension. */
 typedef struct elements {
@@ -46,12 +49,17 @@ static void find_box(file *f) {
 
 static bool open_file(file *f, laves__output *out, const laves_mesh *mesh, bool ascii) {
   *f = (file){.out = out, .mesh = mesh, .ascii = ascii, .box = box3_empty()};
-  f->sets[0] = (elements){
-      .mesh = mesh, .dimension = 2, .corner_count = 3, .type = ELEMENT_TRIANGLE, .count = mesh->face_count, .first_number = 1};
+  const bool second = mesh->quadratic != NULL;
+  f->sets[0] = (elements){.mesh = mesh,
+                          .dimension = 2,
+                          .corner_count = laves__face_width(mesh),
+                          .type = second ? ELEMENT_TRIANGLE_2 : ELEMENT_TRIANGLE,
+                          .count = mesh->face_count,
+                          .first_number = 1};
   f->sets[1] = (elements){.mesh = mesh,
                           .dimension = 3,
-                          .corner_count = 4,
-                          .type = ELEMENT_TET,
+                          .corner_count = laves__tet_width(mesh),
+                          .type = second ? ELEMENT_TET_2 : ELEMENT_TET,
                           .count = mesh->tet_count,
                           .first_number = 1 + mesh->face_count};
   if (!laves__tag_order_make(out->context, mesh->face_tags, mesh->face_count, &f->sets[0].order) ||
@@ -80,11 +88,21 @@ typedef struct corner_reader {
   const elements *elements;
   size_t first, end; /* the tets in `piece` */
   int32_t piece[PIECE][4];
+  int32_t swapped[NODES_MAX];
 } corner_reader;
+
+/* Gmsh's last two nodes of ten stand on the other's edge. */
+static const int32_t *swap_last(corner_reader *r, const int32_t *nodes) {
+  memcpy(r->swapped, nodes, sizeof r->swapped);
+  r->swapped[8] = nodes[9];
+  r->swapped[9] = nodes[8];
+  return r->swapped;
+}
 
 static const int32_t *corners(corner_reader *r, size_t i) {
   const laves_mesh *mesh = r->elements->mesh;
-  if (r->elements->dimension == 2) return mesh->faces[i];
+  if (r->elements->dimension == 2) return laves__face_nodes(mesh, i);
+  if (mesh->quadratic) return swap_last(r, mesh->quadratic->tets[i]);
   if (mesh->tets) return mesh->tets[i];
   if (i < r->first || i >= r->end) {
     r->first = i;
@@ -200,7 +218,7 @@ static size_t pack_elements22(const void *user, size_t begin, size_t end, char *
   for (size_t i = begin; i < end; i++, bytes += size) {
     const size_t item = block_item(b, i);
     const int32_t *corner = corners(&reader, item);
-    int32_t row[7] = {(int32_t)(e->first_number + item), physical_tag(e, b->group), (int32_t)b->group + 1};
+    int32_t row[3 + NODES_MAX] = {(int32_t)(e->first_number + item), physical_tag(e, b->group), (int32_t)b->group + 1};
     for (int j = 0; j < e->corner_count; j++) row[3 + j] = corner[j] + 1;
     memcpy(bytes, row, size);
   }
@@ -209,7 +227,7 @@ static size_t pack_elements22(const void *user, size_t begin, size_t end, char *
 
 static void write_block22(file *f, const block *b) {
   if (f->ascii) {
-    laves__output_items(f->out, b->count, 9 * (LAVES__INTEGER_TEXT_MAX + 1), put_elements22, b);
+    laves__output_items(f->out, b->count, (5 + NODES_MAX) * (LAVES__INTEGER_TEXT_MAX + 1), put_elements22, b);
     return;
   }
   write_int(f, b->elements->type);
@@ -357,7 +375,7 @@ static size_t pack_elements41(const void *user, size_t begin, size_t end, char *
   for (size_t i = begin; i < end; i++, bytes += size) {
     const size_t item = block_item(b, i);
     const int32_t *corner = corners(&reader, item);
-    uint64_t row[5] = {e->first_number + item};
+    uint64_t row[1 + NODES_MAX] = {e->first_number + item};
     for (int j = 0; j < e->corner_count; j++) row[1 + j] = (uint64_t)corner[j] + 1;
     memcpy(bytes, row, size);
   }
@@ -376,7 +394,7 @@ static void write_elements41(file *f) {
       const block b = get_block(e, i);
       write_fields(f, "iiis;", (uint64_t[]){(uint64_t)e->dimension, i + 1, (uint64_t)e->type, b.count});
       if (f->ascii)
-        laves__output_items(f->out, b.count, 5 * (LAVES__INTEGER_TEXT_MAX + 1), put_elements41, &b);
+        laves__output_items(f->out, b.count, (1 + NODES_MAX) * (LAVES__INTEGER_TEXT_MAX + 1), put_elements41, &b);
       else
         laves__output_rows(f->out, b.count, (size_t)(1 + e->corner_count) * 8, pack_elements41, &b);
     }

@@ -138,6 +138,15 @@ static laves_result check_options(const laves_write_options *options, laves_erro
   return LAVES_OK;
 }
 
+/* A mesh of second order with all its nodes as vertices, for the writers. */
+static laves_mesh with_nodes(const laves_mesh *mesh) {
+  laves_mesh view = *mesh;
+  if (!mesh->quadratic) return view;
+  view.vertex_count = mesh->quadratic->node_count;
+  view.points = mesh->quadratic->points;
+  return view;
+}
+
 laves_result laves_mesh_write(laves_context *context, const laves_mesh *mesh, const char *path,
                               const laves_write_options *options, laves_error *error) {
   const laves_write_options defaults = laves_write_options_default();
@@ -153,8 +162,14 @@ laves_result laves_mesh_write(laves_context *context, const laves_mesh *mesh, co
         path);
   const laves_result held = laves_format_streams(format) ? LAVES_OK : laves__mesh_require_arrays(mesh, "this format", error);
   if (held != LAVES_OK) return held;
+  if (mesh->quadratic && !laves_format_is_quadratic(format))
+    return laves__fail(error, LAVES_ERROR_OPTION,
+                       "cannot write '%s': %s files of ours have no elements of second order; choose VTU, Gmsh, Medit, Abaqus, "
+                       "Exodus, Nastran, VTKHDF, VTK, XDMF or NPZ",
+                       path, laves_format_name(format));
   laves__progress_reset(context);
-  if (format == LAVES_FORMAT_TETGEN) return write_tetgen(context, mesh, path, error);
-  if (format == LAVES_FORMAT_XDMF) return write_xdmf(context, mesh, path, error);
-  return write_one(context, mesh, path, format, options, error);
+  const laves_mesh nodes = with_nodes(mesh);
+  if (format == LAVES_FORMAT_TETGEN) return write_tetgen(context, &nodes, path, error);
+  if (format == LAVES_FORMAT_XDMF) return write_xdmf(context, &nodes, path, error);
+  return write_one(context, &nodes, path, format, options, error);
 }

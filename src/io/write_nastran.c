@@ -1,5 +1,5 @@
-/* Nastran's bulk data: GRID, CTETRA with the region as property, CTRIA3 with the face tag as property; neither properties nor
- * materials, which the user adds. Numbers count from 1, triangles after the tetrahedra.
+/* Nastran's bulk data: GRID, CTETRA with the region as property, CTRIA3 (CTRIA6 of a mesh of second order) with the face tag as
+ * property; neither properties nor materials, which the user adds. Numbers count from 1, triangles after the tetrahedra.
  *
  * Coordinates are in the long form, whose fields have 16 characters; elements in the short one, of 8, while their numbers fit.
  * Solids and shells share the numbers of properties: where a tag is also the number of a region, a power of ten above all regions
@@ -11,7 +11,7 @@
 #include "io/write_mesh.h"
 #include "io/write_text.h"
 
-enum { SHORT = 8, LONG = 16, ROW_MAX = 160 };
+enum { SHORT = 8, LONG = 16, ROW_MAX = 300 };
 static const size_t largest_short = 99999999;
 
 typedef struct deck {
@@ -39,13 +39,13 @@ static char *put_number(char *text, int64_t number, bool wide) {
   return pad(text, laves__put_integer(text, number), wide ? LONG : SHORT);
 }
 
-/* A card of integers; the long form has four of them a line. */
+/* A card of integers; the long form has four of them a line, the short one eight. */
 static char *put_card(char *text, const char *name, const int64_t *numbers, int count, bool wide) {
   text = put_name(text, name, wide);
   for (int i = 0; i < count; i++) {
-    if (wide && i == 4) {
+    if (i > 0 && i % (wide ? 4 : 8) == 0) {
       *text++ = '\n';
-      text = put_name(text, "", true);
+      text = put_name(text, wide ? "" : "+", wide);
     }
     text = put_number(text, numbers[i], wide);
   }
@@ -73,6 +73,8 @@ static size_t put_points(const void *user, size_t begin, size_t end, char *bytes
 
 /* ---- elements ---- */
 
+static const char *triangle_card(const deck *d) { return d->mesh->quadratic ? "CTRIA6" : "CTRIA3"; }
+
 static int64_t number_of(const laves__tag_order *order, const int32_t *tags, size_t i) {
   if (!tags) return 1;
   if (order->tags[0] > 0) return tags[i];
@@ -91,11 +93,11 @@ static size_t put_tets(const void *user, size_t begin, size_t end, char *bytes) 
   const deck *d = user;
   char *text = bytes;
   for (size_t i = begin; i < end; i++) {
-    const int32_t *t = d->mesh->tets[i];
-    const int64_t card[6] = {(int64_t)i + 1,    number_of(&d->regions, d->mesh->regions, i),
-                             t[0] + INT64_C(1), t[1] + INT64_C(1),
-                             t[2] + INT64_C(1), t[3] + INT64_C(1)};
-    text = put_card(text, "CTETRA", card, 6, d->wide);
+    const int32_t *t = laves__tet_nodes(d->mesh, i);
+    const int width = laves__tet_width(d->mesh);
+    int64_t card[2 + 10] = {(int64_t)i + 1, number_of(&d->regions, d->mesh->regions, i)};
+    for (int j = 0; j < width; j++) card[2 + j] = t[j] + INT64_C(1);
+    text = put_card(text, "CTETRA", card, 2 + width, d->wide);
   }
   return (size_t)(text - bytes);
 }
@@ -104,10 +106,11 @@ static size_t put_faces(const void *user, size_t begin, size_t end, char *bytes)
   const deck *d = user;
   char *text = bytes;
   for (size_t i = begin; i < end; i++) {
-    const int32_t *f = d->mesh->faces[i];
-    const int64_t card[5] = {(int64_t)(d->mesh->tet_count + i) + 1, number_of(&d->tags, d->mesh->face_tags, i) + d->raise,
-                             f[0] + INT64_C(1), f[1] + INT64_C(1), f[2] + INT64_C(1)};
-    text = put_card(text, "CTRIA3", card, 5, d->wide);
+    const int32_t *f = laves__face_nodes(d->mesh, i);
+    const int width = laves__face_width(d->mesh);
+    int64_t card[2 + 6] = {(int64_t)(d->mesh->tet_count + i) + 1, number_of(&d->tags, d->mesh->face_tags, i) + d->raise};
+    for (int j = 0; j < width; j++) card[2 + j] = f[j] + INT64_C(1);
+    text = put_card(text, triangle_card(d), card, 2 + width, d->wide);
   }
   return (size_t)(text - bytes);
 }
@@ -155,7 +158,7 @@ void laves__write_nastran(laves__output *out, const laves_mesh *mesh) {
   out->expected = 83.0 * (double)mesh->vertex_count + 57.0 * (double)mesh->tet_count + 49.0 * (double)mesh->face_count;
   laves__output_printf(out, "$ %zu vertices, %zu tetrahedra\n", mesh->vertex_count, mesh->tet_count);
   write_names(out, &d, 3, &d.regions, "CTETRA");
-  if (mesh->face_count > 0) write_names(out, &d, 2, &d.tags, "CTRIA3");
+  if (mesh->face_count > 0) write_names(out, &d, 2, &d.tags, triangle_card(&d));
   laves__output_printf(out, "BEGIN BULK\n");
   laves__output_items(out, mesh->vertex_count, ROW_MAX, put_points, mesh);
   laves__output_items(out, mesh->tet_count, ROW_MAX, put_tets, &d);

@@ -17,8 +17,9 @@
 
 static size_t pack_faces(const void *user, size_t begin, size_t end, char *bytes) {
   const laves_mesh *mesh = user;
-  memcpy(bytes, mesh->faces + begin, (end - begin) * sizeof *mesh->faces);
-  return (end - begin) * sizeof *mesh->faces;
+  const size_t size = 4 * (size_t)laves__face_width(mesh);
+  if (end > begin) memcpy(bytes, laves__face_nodes(mesh, begin), (end - begin) * size);
+  return (end - begin) * size;
 }
 
 static size_t pack_numbers(const int32_t *numbers, size_t begin, size_t end, char *bytes) {
@@ -91,8 +92,8 @@ void laves__write_npz(laves__output *out, const laves_mesh *mesh) {
   snprintf(name_type, sizeof name_type, "<U%d", (int)NAME_CHARACTERS);
   laves__npz_array arrays[] = {
       {"points", "<f8", mesh->vertex_count, 3, 24, laves__pack_points, mesh, 0, 0},
-      {"tets", "<i4", mesh->tet_count, 4, 16, laves__pack_tets, mesh, 0, 0},
-      {"faces", "<i4", mesh->face_count, 3, 12, pack_faces, mesh, 0, 0},
+      {"tets", "<i4", mesh->tet_count, laves__tet_width(mesh), 4 * (size_t)laves__tet_width(mesh), laves__pack_tets, mesh, 0, 0},
+      {"faces", "<i4", mesh->face_count, laves__face_width(mesh), 4 * (size_t)laves__face_width(mesh), pack_faces, mesh, 0, 0},
       {"face_tags", "<i4", mesh->face_count, 0, 4, pack_tags, mesh, 0, 0},
       {"regions", "<i4", mesh->tet_count, 0, 4, pack_regions, mesh, 0, 0},
       {"group_names", name_type, mesh->group_count, 0, NAME_CHARACTERS * 4, pack_group_names, mesh, 0, 0},

@@ -31,14 +31,18 @@ static void put_corners(char *bytes, const int32_t *corners, int count) {
 
 static size_t pack_tets(const void *user, size_t begin, size_t end, char *bytes) {
   laves__tet_reader reader = {.mesh = user};
-  for (size_t i = begin; i < end; i++, bytes += 20) put_corners(bytes, laves__tet_at(&reader, i), 4);
-  return (end - begin) * 20;
+  const int width = laves__tet_width(user);
+  const size_t size = 4 + 4 * (size_t)width;
+  for (size_t i = begin; i < end; i++, bytes += size) put_corners(bytes, laves__tet_at(&reader, i), width);
+  return (end - begin) * size;
 }
 
 static size_t pack_faces(const void *user, size_t begin, size_t end, char *bytes) {
   const laves_mesh *mesh = user;
-  for (size_t i = begin; i < end; i++, bytes += 16) put_corners(bytes, mesh->faces[i], 3);
-  return (end - begin) * 16;
+  const int width = laves__face_width(mesh);
+  const size_t size = 4 + 4 * (size_t)width;
+  for (size_t i = begin; i < end; i++, bytes += size) put_corners(bytes, laves__face_nodes(mesh, i), width);
+  return (end - begin) * size;
 }
 
 static size_t pack_types(const void *user, size_t begin, size_t end, char *bytes) {
@@ -74,7 +78,7 @@ static size_t text_points(const void *user, size_t begin, size_t end, char *byte
 }
 
 static char *text_corners(char *text, const int32_t *corners, int count) {
-  *text++ = (char)('0' + count);
+  text = laves__put_integer(text, count);
   *text++ = ' ';
   text = laves__put_indices(text, corners, count, 0);
   *text++ = '\n';
@@ -84,14 +88,14 @@ static char *text_corners(char *text, const int32_t *corners, int count) {
 static size_t text_tets(const void *user, size_t begin, size_t end, char *bytes) {
   laves__tet_reader reader = {.mesh = user};
   char *text = bytes;
-  for (size_t i = begin; i < end; i++) text = text_corners(text, laves__tet_at(&reader, i), 4);
+  for (size_t i = begin; i < end; i++) text = text_corners(text, laves__tet_at(&reader, i), laves__tet_width(user));
   return (size_t)(text - bytes);
 }
 
 static size_t text_faces(const void *user, size_t begin, size_t end, char *bytes) {
   const laves_mesh *mesh = user;
   char *text = bytes;
-  for (size_t i = begin; i < end; i++) text = text_corners(text, mesh->faces[i], 3);
+  for (size_t i = begin; i < end; i++) text = text_corners(text, laves__face_nodes(mesh, i), laves__face_width(mesh));
   return (size_t)(text - bytes);
 }
 
@@ -132,10 +136,12 @@ typedef struct kind {
   size_t bytes, text_bytes; /* of an item; the second is a bound */
 } kind;
 
-enum { NUMBER_TEXT = LAVES__INTEGER_TEXT_MAX + 1, CORNERS_TEXT = 4 * NUMBER_TEXT + 3 };
+enum { NUMBER_TEXT = LAVES__INTEGER_TEXT_MAX + 1, CORNERS_TEXT = 11 * NUMBER_TEXT };
 
 static const kind points = {pack_points, text_points, 24, LAVES__POINT_TEXT_MAX + 1};
 static const kind tets = {pack_tets, text_tets, 20, CORNERS_TEXT}, faces = {pack_faces, text_faces, 16, CORNERS_TEXT};
+static const kind quadratic_tets = {pack_tets, text_tets, 44, CORNERS_TEXT};
+static const kind quadratic_faces = {pack_faces, text_faces, 28, CORNERS_TEXT};
 static const kind types = {pack_types, text_types, 4, NUMBER_TEXT}, regions = {pack_regions, text_regions, 4, NUMBER_TEXT};
 static const kind classes = {pack_classes, text_classes, 1, NUMBER_TEXT}, sources = {pack_sources, text_sources, 4, NUMBER_TEXT};
 
@@ -204,8 +210,8 @@ void laves__write_vtk(laves__output *out, const laves_mesh *mesh, bool ascii) {
   laves__output_printf(out, "POINTS %zu double\n", mesh->vertex_count);
   write_items(out, &points, mesh->vertex_count, mesh, ascii);
   laves__output_printf(out, "%sCELLS %zu %zu\n", end, cells, cells + laves__cell_corners(mesh));
-  write_items(out, &tets, mesh->tet_count, mesh, ascii);
-  write_items(out, &faces, triangles, mesh, ascii);
+  write_items(out, mesh->quadratic ? &quadratic_tets : &tets, mesh->tet_count, mesh, ascii);
+  write_items(out, mesh->quadratic ? &quadratic_faces : &faces, triangles, mesh, ascii);
   laves__output_printf(out, "%sCELL_TYPES %zu\n", end, cells);
   write_items(out, &types, cells, mesh, ascii);
   laves__output_printf(out, "%s", end);

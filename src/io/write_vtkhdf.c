@@ -10,13 +10,8 @@
 #include "io/write_mesh.h"
 
 static size_t pack_corners(const void *user, size_t begin, size_t end, char *bytes) {
-  const laves_mesh *mesh = user;
-  int32_t *out = (int32_t *)(void *)bytes;
-  const size_t tet_corners = 4 * mesh->tet_count, last = end < tet_corners ? end : tet_corners;
-  if (begin < last) laves__mesh_corners(mesh, begin, last, out);
-  const size_t first = begin > tet_corners ? begin : tet_corners;
-  if (first < end) memcpy(out + (first - begin), *mesh->faces + (first - tet_corners), (end - first) * sizeof *out);
-  return (end - begin) * sizeof *out;
+  laves__cell_pack_corners(user, begin, end, (int32_t *)(void *)bytes);
+  return (end - begin) * sizeof(int32_t);
 }
 
 /* Numbers of 32 bits spread to 64, in place and from the end on. */

@@ -20,7 +20,7 @@
 
 typedef struct grid {
   const laves_mesh *mesh;
-  size_t faces, cells; /* triangles that are cells; all cells */
+  size_t cells;
 } grid;
 
 /* ---- arrays, item by item; an item is one number, for points one coordinate ---- */
@@ -51,7 +51,7 @@ typedef struct array {
 enum { POINTS, CONNECTIVITY, OFFSETS, TYPES, REGION, CLASS, SOURCE_FACE, ARRAY_COUNT };
 
 static void describe_arrays(const grid *g, array arrays[ARRAY_COUNT]) {
-  const size_t corners = 4 * g->mesh->tet_count + 3 * g->faces;
+  const size_t corners = laves__cell_corners(g->mesh);
   const kind offset_kind = corners <= INT32_MAX ? INT32 : INT64;
   arrays[POINTS] = (array){g, "Points", FLOAT64, 3, 3 * g->mesh->vertex_count, NULL, 0, NULL, NULL};
   arrays[CONNECTIVITY] = (array){g, "connectivity", INT32, 1, corners, NULL, 0, NULL, NULL};
@@ -78,20 +78,6 @@ static inline __attribute__((always_inline)) void pack_integers(const grid *g, s
   }
 }
 
-/* Corners of tets, then of triangles. */
-static void pack_corners(const grid *g, size_t begin, size_t end, int32_t *out) {
-  const size_t tet_corners = 4 * g->mesh->tet_count;
-  if (begin < tet_corners) {
-    const size_t last = end < tet_corners ? end : tet_corners;
-    const bool made = laves__mesh_corners(g->mesh, begin, last, out);
-    LAVES_ASSERT(made);
-    (void)made;
-    out += last - begin;
-    begin = last;
-  }
-  if (end > begin) memcpy(out, *g->mesh->faces + (begin - tet_corners), (end - begin) * sizeof *out);
-}
-
 static void pack_coordinates(const grid *g, size_t begin, size_t end, double *out) {
   const bool made = laves__mesh_coordinates(g->mesh, begin, end, out);
   LAVES_ASSERT(made);
@@ -105,7 +91,7 @@ static size_t pack(const void *user, size_t begin, size_t end, char *bytes) {
   if (a->kind == FLOAT64)
     pack_coordinates(g, begin, end, (double *)(void *)bytes);
   else if (!a->integer)
-    pack_corners(g, begin, end, (int32_t *)(void *)bytes);
+    laves__cell_pack_corners(g->mesh, begin, end, (int32_t *)(void *)bytes);
   else if (a->integer == offset && a->kind == INT32)
     pack_integers(g, begin, end, bytes, sizeof(int32_t), offset);
   else if (a->integer == offset)
@@ -254,7 +240,7 @@ static size_t put_corners(const void *user, size_t begin, size_t end, char *byte
   int32_t piece[PIECE];
   for (size_t first = begin, last; first < end; first = last) {
     last = end - first < PIECE ? end : first + PIECE;
-    pack_corners(a->grid, first, last, piece);
+    laves__cell_pack_corners(a->grid->mesh, first, last, piece);
     for (size_t i = first; i < last; i++) text = put_integer(text, piece[i - first], i);
   }
   return (size_t)(text - bytes);
@@ -355,8 +341,7 @@ static void compress_arrays(laves__output *out, array arrays[ARRAY_COUNT], int l
 
 void laves__write_vtu(laves__output *out, const laves_mesh *mesh, bool ascii, int compression_level) {
   const form f = ascii ? TEXT : compression_level > 0 ? COMPRESSED : RAW;
-  const size_t faces = laves__cell_faces(mesh);
-  const grid g = {mesh, faces, mesh->tet_count + faces};
+  const grid g = {mesh, laves__cell_count(mesh)};
   array arrays[ARRAY_COUNT];
   describe_arrays(&g, arrays);
   if (f == COMPRESSED) compress_arrays(out, arrays, compression_level);

@@ -11,21 +11,22 @@
 #include "io/write_text.h"
 
 /* Numbers that a mixed topology has for each cell: what it is, and its corners. */
-enum { CODE_TRIANGLE = 4, CODE_TET = 6, TET_NUMBERS = 5, FACE_NUMBERS = 4 };
+enum { CODE_TRIANGLE = 4, CODE_TET = 6, CODE_TRIANGLE_2 = 36, CODE_TET_2 = 38 };
 
 static bool is_mixed(const laves_mesh *mesh) { return laves__cell_faces(mesh) > 0; }
 
-static size_t mixed_numbers(const laves_mesh *mesh) {
-  return TET_NUMBERS * mesh->tet_count + FACE_NUMBERS * laves__cell_faces(mesh);
-}
+static size_t mixed_numbers(const laves_mesh *mesh) { return laves__cell_count(mesh) + laves__cell_corners(mesh); }
 
 /* ---- the arrays ---- */
 
 static int32_t mixed_number(laves__tet_reader *reader, size_t i) {
-  const size_t tet_numbers = TET_NUMBERS * reader->mesh->tet_count;
-  if (i < tet_numbers) return i % TET_NUMBERS ? laves__tet_at(reader, i / TET_NUMBERS)[i % TET_NUMBERS - 1] : CODE_TET;
+  const laves_mesh *mesh = reader->mesh;
+  const bool second = mesh->quadratic != NULL;
+  const size_t tet = 1 + (size_t)laves__tet_width(mesh), face = 1 + (size_t)laves__face_width(mesh);
+  const size_t tet_numbers = tet * mesh->tet_count;
+  if (i < tet_numbers) return i % tet ? laves__tet_at(reader, i / tet)[i % tet - 1] : second ? CODE_TET_2 : CODE_TET;
   i -= tet_numbers;
-  return i % FACE_NUMBERS ? reader->mesh->faces[i / FACE_NUMBERS][i % FACE_NUMBERS - 1] : CODE_TRIANGLE;
+  return i % face ? laves__face_nodes(mesh, i / face)[i % face - 1] : second ? CODE_TRIANGLE_2 : CODE_TRIANGLE;
 }
 
 static size_t pack_mixed(const void *user, size_t begin, size_t end, char *bytes) {
@@ -45,7 +46,7 @@ void laves__write_xdmf_data(laves__output *out, const laves_mesh *mesh) {
   if (is_mixed(mesh))
     laves__hdf5_array(&file, root, "cells", LAVES__HDF5_INT32, mixed_numbers(mesh), 0, pack_mixed, mesh);
   else
-    laves__hdf5_array(&file, root, "cells", LAVES__HDF5_INT32, mesh->tet_count, 4, laves__pack_tets, mesh);
+    laves__hdf5_array(&file, root, "cells", LAVES__HDF5_INT32, mesh->tet_count, laves__tet_width(mesh), laves__pack_tets, mesh);
   laves__hdf5_array(&file, root, "region", LAVES__HDF5_INT32, cells, 0, laves__pack_cell_regions, mesh);
   laves__hdf5_array(&file, root, "class", LAVES__HDF5_UINT8, cells, 0, laves__pack_cell_classes, mesh);
   if (mesh->face_sources)
@@ -92,8 +93,11 @@ void laves__write_xdmf(laves__output *out, const laves_mesh *mesh, const char *n
       "      <Geometry GeometryType=\"XYZ\">\n");
   write_item(out, name, "points", "DataType=\"Float\" Precision=\"8\"", mesh->vertex_count, 3);
   laves__output_printf(out, "      </Geometry>\n      <Topology TopologyType=\"%s\" NumberOfElements=\"%zu\">\n",
-                       mixed ? "Mixed" : "Tetrahedron", cells);
-  write_item(out, name, "cells", int32, mixed ? mixed_numbers(mesh) : cells, mixed ? 0 : 4);
+                       mixed             ? "Mixed"
+                       : mesh->quadratic ? "Tetrahedron_10"
+                                         : "Tetrahedron",
+                       cells);
+  write_item(out, name, "cells", int32, mixed ? mixed_numbers(mesh) : cells, mixed ? 0 : laves__tet_width(mesh));
   laves__output_printf(out, "      </Topology>\n");
   write_names(out, mesh);
   write_attribute(out, name, "region", int32, cells);

@@ -33,10 +33,19 @@ laves_mesh *laves__mesh_create_hollow(laves_context *context, size_t vertex_coun
   return create(context, vertex_count, tet_count, face_count, regions, face_tags, true);
 }
 
+void laves__quadratic_free(laves_context *context, const laves_mesh *mesh, laves__quadratic *quadratic) {
+  if (!quadratic) return;
+  laves__free(context, quadratic->points, quadratic->node_count, sizeof *quadratic->points);
+  laves__free(context, quadratic->tets, mesh->tet_count, sizeof *quadratic->tets);
+  laves__free(context, quadratic->faces, mesh->face_count, sizeof *quadratic->faces);
+  laves__free(context, quadratic, 1, sizeof *quadratic);
+}
+
 void laves_mesh_free(laves_mesh *mesh) {
   if (!mesh) return;
   laves_context *context = mesh->context;
   if (mesh->maker.self) mesh->maker.free(mesh->maker.self);
+  laves__quadratic_free(context, mesh, mesh->quadratic);
   laves__free(context, mesh->points, mesh->vertex_count, sizeof *mesh->points);
   laves__free(context, mesh->tets, mesh->tet_count, sizeof *mesh->tets);
   laves__free(context, mesh->faces, mesh->face_count, sizeof *mesh->faces);
@@ -134,6 +143,19 @@ const int32_t *laves_mesh_faces(const laves_mesh *mesh) { return mesh->faces ? *
 const int32_t *laves_mesh_regions(const laves_mesh *mesh) { return mesh->regions; }
 const int32_t *laves_mesh_face_tags(const laves_mesh *mesh) { return mesh->face_tags; }
 const int32_t *laves_mesh_face_sources(const laves_mesh *mesh) { return mesh->face_sources; }
+int laves_mesh_order(const laves_mesh *mesh) { return mesh->quadratic ? 2 : 1; }
+size_t laves_mesh_node_count(const laves_mesh *mesh) {
+  return mesh->quadratic ? mesh->quadratic->node_count : mesh->vertex_count;
+}
+const double *laves_mesh_node_points(const laves_mesh *mesh) {
+  return mesh->quadratic ? &mesh->quadratic->points->x : laves_mesh_points(mesh);
+}
+const int32_t *laves_mesh_tet_nodes(const laves_mesh *mesh) {
+  return mesh->quadratic ? *mesh->quadratic->tets : laves_mesh_tets(mesh);
+}
+const int32_t *laves_mesh_face_nodes(const laves_mesh *mesh) {
+  return mesh->quadratic ? *mesh->quadratic->faces : laves_mesh_faces(mesh);
+}
 bool laves_mesh_is_streamed(const laves_mesh *mesh) { return mesh->maker.self != NULL; }
 
 static laves_result check_read(size_t first, size_t count, size_t total, const char *what, laves_error *error) {

@@ -20,6 +20,17 @@ typedef struct laves__maker {
   void (*free)(void *self);
 } laves__maker;
 
+/* Nodes of second order; see curve/quadratic.h for their places within an element. */
+typedef struct laves__quadratic {
+  size_t node_count;
+  laves__vec3 *points; /* [node_count] the vertices, then the nodes on edges */
+  int32_t (*tets)[10]; /* [tet_count] */
+  int32_t (*faces)[6]; /* [face_count] */
+} laves__quadratic;
+
+/* The arrays are of a mesh with the counts of `mesh`. */
+void laves__quadratic_free(laves_context *context, const laves_mesh *mesh, laves__quadratic *quadratic);
+
 struct laves_mesh {
   laves_context *context;
   size_t vertex_count, tet_count, face_count;
@@ -33,6 +44,7 @@ struct laves_mesh {
   laves__group *groups;
   size_t group_count;
   laves__maker maker;
+  laves__quadratic *quadratic; /* NULL: the mesh is of first order */
 };
 
 /* An empty mesh with arrays of the given sizes, contents undefined (regions and tags only when asked for).
@@ -57,5 +69,16 @@ bool laves__mesh_add_group(laves_mesh *mesh, int dimension, int32_t tag, const c
 static const uint8_t laves__tet_face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 /* The corners of edge i: 01 02 03 12 13 23; the opposite edge of i is 5 - i. */
 static const uint8_t laves__tet_edge[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
+/* Nodes of a tet and of a boundary face: 4 and 3, or 10 and 6. */
+static inline int laves__tet_width(const laves_mesh *mesh) { return mesh->quadratic ? 10 : 4; }
+static inline int laves__face_width(const laves_mesh *mesh) { return mesh->quadratic ? 6 : 3; }
+/* All nodes of one; of a mesh in memory. */
+static inline const int32_t *laves__tet_nodes(const laves_mesh *mesh, size_t i) {
+  return mesh->quadratic ? mesh->quadratic->tets[i] : mesh->tets[i];
+}
+static inline const int32_t *laves__face_nodes(const laves_mesh *mesh, size_t i) {
+  return mesh->quadratic ? mesh->quadratic->faces[i] : mesh->faces[i];
+}
 
 #endif

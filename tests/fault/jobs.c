@@ -522,6 +522,24 @@ static laves_result write_mesh(laves_context *context, const job_place *place, c
   return result;
 }
 
+/* Reads the mesh of a cube, gives it nodes of second order for a larger one that shares three of its sides, and writes it. */
+static laves_result curve(laves_context *context, const job_place *place, const char *what, job_outcome *out) {
+  char path[PATH_BYTES];
+  laves_mesh *mesh = NULL;
+  laves_domain *domain = NULL;
+  laves_curve_report report = {0};
+  laves_result result = laves_mesh_read(context, input_path(place, "tagged.vtu", path), &mesh, &out->error);
+  if (result == LAVES_OK) result = laves_domain_from_expression(context, "box(2, 2, 2)", &domain, &out->error);
+  if (result == LAVES_OK) result = laves_mesh_curve(context, mesh, domain, NULL, &report, &out->error);
+  if (result == LAVES_OK) result = laves_mesh_write(context, mesh, output_path(place, what, path), NULL, &out->error);
+  if (result == LAVES_OK) take_written(path, out);
+  take_number(out, (double)report.on_surface);
+  take_number(out, report.least_jacobian);
+  laves_domain_free(domain);
+  laves_mesh_free(mesh);
+  return result;
+}
+
 const job jobs[] = {
     {"read STL, text", read_domain, "cube_text.stl"},
     {"read STL, binary", read_domain, "cube.stl"},
@@ -584,6 +602,13 @@ const job jobs[] = {
     {"write OBJ", write_mesh, "x.obj"},
     {"write PLY", write_mesh, "x.ply"},
     {"write OFF", write_mesh, "x.off"},
+    {"curve and write VTU", curve, "x.vtu"},
+    {"curve and write Gmsh", curve, "x.msh"},
+    {"curve and write XDMF", curve, "x.xdmf"},
+    {"curve and write Abaqus", curve, "x.inp"},
+    {"curve and write Exodus", curve, "x.exo"},
+    {"curve and write Nastran", curve, "x.bdf"},
+    {"curve and write Medit", curve, "x.meshb"},
     {"read VTU, text", read_mesh, "tagged_text.vtu"},
     {"read VTU, compressed", read_mesh, "tagged.vtu"},
     {"read Gmsh 2.2", read_mesh, "tagged22.msh"},

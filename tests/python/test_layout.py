@@ -27,6 +27,7 @@ LACKING = {
     "laves_cause_text": "as laves_defect_text",
     "laves_feature_fault_key": "as laves_exception_key",
     "laves_feature_fault_text": "as laves_defect_text",
+    "laves_format_is_quadratic": "writing refuses the others with the library's sentence",
     "laves_format_from_name": "formats are told by the enum's names (test_format_names)",
 }
 

@@ -327,6 +327,46 @@ class Arrays(unittest.TestCase):
         self.assertEqual((empty.points.shape, empty.tets.shape, empty.faces.shape), ((0, 3), (0, 4), (0, 3)))
 
 
+class SecondOrder(unittest.TestCase):
+    def test_nodes_are_on_the_surface(self):
+        mesh = laves.mesh(solids.sphere(1), size=0.3)
+        before = mesh.hash
+        self.assertEqual((mesh.order, mesh.nodes.shape, mesh.tet_nodes.shape), (1, mesh.points.shape, mesh.tets.shape))
+        report = mesh.curve()
+        self.assertEqual((mesh.order, mesh.hash, len(mesh.nodes)), (2, before, report.nodes))
+        self.assertEqual(report.on_surface, report.boundary_edges)
+        self.assertGreater(report.least_jacobian, 0.5)
+        self.assertLess(report.curved_mean, 0.05 * report.straight_mean)
+        radii = np.linalg.norm(mesh.nodes[mesh.face_nodes], axis=2)
+        self.assertLess(abs(radii - 1).max(), 1e-9)
+        np.testing.assert_array_equal(mesh.tet_nodes[:, :4], mesh.tets)
+        np.testing.assert_array_equal(mesh.nodes[:mesh.vertex_count], mesh.points)
+        self.assertFalse(mesh.nodes.flags.writeable)
+        with self.assertRaisesRegex(laves.OptionError, "second order already"):
+            mesh.curve()
+
+    def test_straight_nodes_need_no_domain(self):
+        mesh = laves.Mesh.tiling((1, 1, 1), 0.1)
+        with self.assertRaisesRegex(laves.OptionError, "does not know its solid"):
+            mesh.curve()
+        mesh.curve(straight=True)
+        middles = mesh.nodes[mesh.tet_nodes[:, :2]].mean(axis=1)
+        np.testing.assert_array_equal(mesh.nodes[mesh.tet_nodes[:, 4]], middles)
+
+    def test_files(self):
+        mesh = laves.mesh(solids.sphere(1), size=0.4)
+        mesh.curve(min_jacobian=0.5, distances=False)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "ball.npz")
+            mesh.write(path)
+            with np.load(path) as arrays:
+                np.testing.assert_array_equal(arrays["points"], mesh.nodes)
+                np.testing.assert_array_equal(arrays["tets"], mesh.tet_nodes)
+                np.testing.assert_array_equal(arrays["faces"], mesh.face_nodes)
+            with self.assertRaisesRegex(laves.OptionError, "no elements of second order"):
+                mesh.write(os.path.join(folder, "ball.stl"))
+
+
 class Program(unittest.TestCase):
     def test_same_bytes(self):
         """The program's file and the package's, and both certificates."""

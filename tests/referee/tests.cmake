@@ -18,6 +18,8 @@ set_tests_properties(referee/sizes_by_gmsh PROPERTIES LABELS referee SKIP_RETURN
 if(TARGET laves-program)
   add_test(NAME referee/solved_by_calculix COMMAND ${CMAKE_CURRENT_LIST_DIR}/solved_by_calculix $<TARGET_FILE:laves-program>)
   set_tests_properties(referee/solved_by_calculix PROPERTIES LABELS referee SKIP_RETURN_CODE 77)
+  add_test(NAME referee/read_quadratic COMMAND ${CMAKE_CURRENT_LIST_DIR}/read_quadratic $<TARGET_FILE:laves-program>)
+  set_tests_properties(referee/read_quadratic PROPERTIES LABELS referee SKIP_RETURN_CODE 77)
   add_test(NAME referee/surfaces_by_gmsh COMMAND ${CMAKE_CURRENT_LIST_DIR}/surfaces_by_gmsh $<TARGET_FILE:laves-program>)
   set_tests_properties(referee/surfaces_by_gmsh PROPERTIES LABELS referee SKIP_RETURN_CODE 77)
 endif()
