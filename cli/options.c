@@ -263,7 +263,7 @@ typedef struct parser {
   settings *given;
   int count, next, current; /* words; the next one; the one that is looked at */
   char **words;
-  const struct parser *over; /* of a job: the command line's, which counts for more; else NULL */
+  const struct parser *over;  /* of a job: the command line's, which counts for more; else NULL */
   const char *group_names[4]; /* the first option of each group that was seen */
   bool seen[OPTION_CAPACITY];
   bool given_input;

@@ -38,7 +38,7 @@ typedef struct settings {
   int word_count;           /* of the command line, behind the command's name */
   char **words;             /* of the command line */
   int job_first, job_after; /* those of them that are --job itself */
-  const char *input; /* NULL where the command takes none */
+  const char *input;        /* NULL where the command takes none */
   option_texts outputs;
   const char *boundary, *json, *surface; /* NULL: not given */
   const char *certificate, *write_certificate, *report;

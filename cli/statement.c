@@ -127,7 +127,8 @@ void statement_write_json(json *out, const laves_certificate *c) {
   write_exceptions(out, c);
 }
 
-laves_result statement_make(session *run, const laves_mesh *mesh, laves_certify_options *options, laves_certificate *certificate) {
+laves_result statement_make(session *run, const laves_mesh *mesh, laves_certify_options *options,
+                            laves_certificate *certificate) {
   const char **words = options_command(run->given, &options->command_count);
   if (!words) return session_fail(run, LAVES_ERROR_MEMORY, "no memory for the words of the command");
   options->command = words;

@@ -950,9 +950,9 @@ typedef struct laves_certify_options {
   double min_dihedral, max_dihedral, volume_length;     ///< asked window where there are no options; default as there
   // Features to be measured where there are no options (with them: those that they ask for). They need the domain and
   // `distances`.
-  double feature_angle;  ///< as laves_options.feature_angle; default 0: none are looked for
-  bool feature_tags;     ///< as laves_options.feature_tags
-  double feature_size;   ///< as laves_feature_options.size; default 0: that of the mesh's exact tiles, where it has many
+  double feature_angle;        ///< as laves_options.feature_angle; default 0: none are looked for
+  bool feature_tags;           ///< as laves_options.feature_tags
+  double feature_size;         ///< as laves_feature_options.size; default 0: that of the mesh's exact tiles, where it has many
   const char *const *command;  ///< [command_count] words of the command that makes the mesh again, to be stated as they are;
                                ///< NULL: none. Left out, too, where they are no UTF-8 or more than a certificate holds
   int command_count;           ///< at most LAVES_COMMAND_WORDS, whose bytes with a NUL each are LAVES_COMMAND_CAPACITY at most

@@ -144,7 +144,7 @@ def smaller(command, block, page):
     """The command as it is run: replaced where a comment says so, with few tetrahedra or pixels where it asks for no size."""
     for old, new in [rest.split() for rest in block.note("replace")] + REPLACED.get(page, []):
         command = command.replace(old, new)
-    if command.startswith("laves mesh ") and not SIZED.search(command):
+    if command.startswith("laves mesh ") and "--job" not in command and not SIZED.search(command):
         command = command.replace("laves mesh ", f"laves mesh {' '.join(COARSE)} ", 1)
     if command.startswith("laves view ") and "--size" not in command:
         command = command.replace("laves view ", "laves view --size 320x240 ", 1)
@@ -242,6 +242,9 @@ class Page:
 
     def block(self, block):
         if block.note("skip"):
+            return
+        if block.note("file"):
+            (self.folder / block.note("file")[0]).write_text("\n".join(block.lines) + "\n")
             return
         if block.language == "lua":
             self.script(block)
