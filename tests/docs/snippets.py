@@ -38,6 +38,7 @@ end_header
 SIZES = "View \"size\" {\nSS(-9,-9,-9, 99,-9,-9, -9,99,-9, -9,-9,99){1, 2, 2, 2};\n};\n"
 TEXTS = {
     "part.lua": f"return {PART}\n",
+    "part.toml": f'input = "{PART}"\nrel-size = 0.07\n[mesh]\noutput = ["part.vtu"]\n',
     "scan.ply": OPEN_BOX,
     "drawn.txt": DRAWN,
     "seams.txt": DRAWN,
@@ -65,7 +66,7 @@ def make_input(program, folder, name):
 
 
 OUTPUTS = {"-o", "--output", "--boundary", "--json", "--defects", "--write-certificate", "--report"}
-FILE = re.compile(r"(?<![\w/.'-])([\w-]+\.(?:stl|obj|ply|off|vtu|msh|mesh|lua|txt|pos))(?![\w/])")
+FILE = re.compile(r"(?<![\w/.'-])([\w-]+\.(?:stl|obj|ply|off|vtu|msh|mesh|lua|toml|txt|pos))(?![\w/])")
 
 
 def inputs_of(command):
