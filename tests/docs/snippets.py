@@ -66,7 +66,7 @@ def make_input(program, folder, name):
 
 
 OUTPUTS = {"-o", "--output", "--boundary", "--json", "--defects", "--write-certificate", "--report"}
-FILE = re.compile(r"(?<![\w/.'-])([\w-]+\.(?:stl|obj|ply|off|vtu|msh|mesh|lua|toml|txt|pos))(?![\w/])")
+FILE = re.compile(r"(?<![\w/.'-])([\w-]+\.(?:stl|obj|ply|off|vtu|msh|mesh|lua|txt|pos))(?![\w/])")
 
 
 def inputs_of(command):
@@ -74,7 +74,7 @@ def inputs_of(command):
     words, found = command.split("#")[0].split(), []
     for before, word in zip([""] + words, words):
         if before not in OUTPUTS:
-            found += FILE.findall(word)
+            found += FILE.findall(word) + [word] * (word in TEXTS)
     return found
 
 
