@@ -6,6 +6,7 @@
 #   make bench      measures quality and speed, and draws README's table
 #   make docs       the documentation as a site, at build/site
 #   make install    installs program, library, header and package files under PREFIX (/usr/local)
+#   make packages   Debian packages and a tar, into build-package/
 #   make format     lays out the C sources by .clang-format, lists them in src/README.md, and renews docs/api.md
 #   make clean      removes build/
 #   make help       prints this
@@ -48,10 +49,16 @@ format:
 	@tools/source_list.py --write
 	@tools/api_reference.py --write
 
+packages:
+	@tools/setup packages
+	@cmake --preset package --log-level=WARNING
+	@cmake --build --preset package --parallel $(JOBS)
+	@cmake --build --preset package --target package
+
 clean:
 	@rm -rf $(BUILD)
 
 help:
 	@sed -n '3,/^$$/s/^# \{0,1\}//p' Makefile
 
-.PHONY: all demo check bench docs install format clean help
+.PHONY: all demo check bench docs install packages format clean help

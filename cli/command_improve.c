@@ -48,8 +48,7 @@ static laves_result certify(session *run, improve_run *all) {
   options.max_dihedral = all->options.max_dihedral;
   options.volume_length = all->options.volume_length;
   options.feature_angle = 0; /* there is no surface beside the mesh */
-  const laves_result result =
-      session_settle(run, laves_certify(run->context, all->after, &options, &all->certificate, &run->error));
+  const laves_result result = statement_make(run, all->after, &options, &all->certificate);
   all->has_certificate = result == LAVES_OK;
   all->certify_seconds = progress_now() - start;
   return result;

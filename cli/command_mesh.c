@@ -80,8 +80,7 @@ static laves_result certify(session *run, mesh_run *all) {
   options.input = all->in.text;
   options.options = &all->options;
   options.report = &all->report;
-  laves_result result = laves_certify(run->context, all->mesh, &options, &all->certificate, &run->error);
-  result = session_settle(run, result);
+  laves_result result = statement_make(run, all->mesh, &options, &all->certificate);
   all->has_certificate = result == LAVES_OK;
   all->certify_seconds = progress_now() - start;
   if (all->has_certificate && !all->certificate.check.valid) {

@@ -270,6 +270,9 @@ const option option_rows[] = {
     {"json", 0, DATA, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(json), 0,
      "write all facts as JSON (docs/json.md); - is the standard output"},
 
+    {"job", 0, ALL, IN_RUN, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(job_path), 0,
+     "take the input and the options that are not given here from a file: TOML, JSON, or a certificate, whose mesh is then made "
+     "again (docs/job.md)"},
     {"threads", 0, MESH | CHECK | INFO | IMPROVE | REPORT, IN_RUN, OPTION_COUNT, "N", NULL, false, 1, 4096, "one per core",
      MEMBER(threads), 0, "threads to use; the mesh never depends on it"},
     {"memory", 0, ALL, IN_RUN, OPTION_BYTES, "SIZE", "bytes", false, 1, 1e18, "what the machine has", MEMBER(memory), 0,

@@ -102,15 +102,25 @@ int main(int count, char **words) {
   if (!about) return unknown_command(name);
 
   settings given;
+  int code = EXIT_USAGE;
   switch (options_parse(about, count - 2, words + 2, &given)) {
     case OPTIONS_WRONG:
-      return EXIT_USAGE;
+      code = EXIT_USAGE;
+      break;
+    case OPTIONS_UNREADABLE:
+      code = laves_result_exit_code(LAVES_ERROR_INPUT);
+      break;
+    case OPTIONS_NO_MEMORY:
+      code = laves_result_exit_code(LAVES_ERROR_MEMORY);
+      break;
     case OPTIONS_HELP:
       options_print_help(stdout, about);
-      return finish_output();
-    case OPTIONS_RUN:
+      code = finish_output();
       break;
+    case OPTIONS_RUN:
+      interrupt_watch();
+      code = about->run(&given);
   }
-  interrupt_watch();
-  return about->run(&given);
+  options_release(&given);
+  return code;
 }

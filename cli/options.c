@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "job.h"
 #include "text.h"
 
 /* ---- values ---- */
@@ -260,25 +261,43 @@ static bool store_value(const option *row, const char *text, settings *given, ch
 typedef struct parser {
   const command *about;
   settings *given;
-  int count, next;
+  int count, next, current; /* words; the next one; the one that is looked at */
   char **words;
+  const struct parser *over;  /* of a job: the command line's, which counts for more; else NULL */
   const char *group_names[4]; /* the first option of each group that was seen */
   bool seen[OPTION_CAPACITY];
+  bool given_input;
 } parser;
 
 static options_outcome wrong_usage(const parser *state, const char *sentence) {
-  text_error("%s", sentence);
+  const int line = state->over && state->current < state->count ? state->given->job->lines[state->current] : 0;
+  if (line > 0) {
+    text_error("%s:%d: %s", state->given->job_path, line, sentence);
+  } else if (state->over) {
+    text_error("%s: %s", state->given->job_path, sentence);
+  } else {
+    text_error("%s", sentence);
+  }
   text_say("Try 'laves %s --help'.", state->about->name);
   return OPTIONS_WRONG;
 }
 
-static const option *find_option(const command *about, const char *name, size_t length) {
+const option *option_find(const command *about, const char *name, size_t length) {
   for (size_t i = 0; i < option_count; ++i) {
     const option *row = &option_rows[i];
     if (!(row->commands & about->bit)) continue;
     if (strncmp(row->name, name, length) == 0 && row->name[length] == '\0') return row;
   }
   return NULL;
+}
+
+const char *option_nearest(const command *about, const char *name) {
+  const char *known[OPTION_CAPACITY];
+  size_t count = 0;
+  for (size_t i = 0; i < option_count; ++i) {
+    if (option_rows[i].commands & about->bit) known[count++] = option_rows[i].name;
+  }
+  return text_nearest(name, known, count);
 }
 
 static const option *find_letter(const command *about, char letter) {
@@ -291,12 +310,7 @@ static const option *find_letter(const command *about, char letter) {
 static options_outcome unknown_option(const parser *state, const char *word) {
   char name[64], sentence[SENTENCE_CAPACITY];
   snprintf(name, sizeof name, "%.*s", (int)strcspn(word, "="), word);
-  const char *known[OPTION_CAPACITY];
-  size_t count = 0;
-  for (size_t i = 0; i < option_count; ++i) {
-    if (option_rows[i].commands & state->about->bit) known[count++] = option_rows[i].name;
-  }
-  const char *near = text_nearest(name + strspn(name, "-"), known, count);
+  const char *near = option_nearest(state->about, name + strspn(name, "-"));
   if (near) {
     snprintf(sentence, sizeof sentence, "unknown option '%s'; did you mean '--%s'?", name, near);
   } else {
@@ -323,6 +337,21 @@ static bool note_use(parser *state, const option *row, char *sentence) {
   return true;
 }
 
+/* Whether the command line says what a job says of this option, too. */
+static bool is_overridden(const parser *state, const option *row) {
+  if (!state->over) return false;
+  return state->over->seen[row - option_rows] || (row->group > 0 && state->over->group_names[row->group]);
+}
+
+/* The words that were just read count. */
+static void note_words(const parser *state, const option *row) {
+  settings *given = state->given;
+  for (int i = state->current; state->over && i < state->next; ++i) given->job->used[i] = true;
+  if (state->over || row->member != offsetof(settings, job_path) || row->kind != OPTION_WORD) return;
+  given->job_first = state->current;
+  given->job_after = state->next;
+}
+
 /* `value` is what stood behind = or the letter, or NULL. */
 static options_outcome take_option(parser *state, const option *row, const char *value) {
   char wrong[SENTENCE_CAPACITY] = "", sentence[SENTENCE_CAPACITY + 80];
@@ -343,6 +372,8 @@ static options_outcome take_option(parser *state, const option *row, const char 
     snprintf(sentence, sizeof sentence, "option '--%s' needs a value: --%s %s", row->name, row->name, row->argument);
     return wrong_usage(state, sentence);
   }
+  if (is_overridden(state, row)) return OPTIONS_RUN;
+  note_words(state, row);
   if (!note_use(state, row, sentence)) return wrong_usage(state, sentence);
   if (!store_value(row, value, state->given, wrong)) {
     snprintf(sentence, sizeof sentence, "option '--%s' %s", row->name, wrong);
@@ -353,17 +384,21 @@ static options_outcome take_option(parser *state, const option *row, const char 
 
 static options_outcome take_word(parser *state, const char *word) {
   char sentence[SENTENCE_CAPACITY];
+  if (state->over && state->over->given_input) return OPTIONS_RUN;
   if (!state->about->argument || state->given->input) {
     snprintf(sentence, sizeof sentence, "'%.100s' is one argument too many%s", word,
              state->about->argument ? "; put an expression in quotes" : "");
     return wrong_usage(state, sentence);
   }
   state->given->input = word;
+  state->given_input = true;
+  if (state->over) state->given->job->used[state->current] = true;
   return OPTIONS_RUN;
 }
 
 static options_outcome take_next(parser *state, bool *options_ended) {
   const char *word = state->words[state->next++];
+  state->current = state->next - 1;
   if (*options_ended || word[0] != '-' || word[1] == '\0') return take_word(state, word);
   if (strcmp(word, "--") == 0) {
     *options_ended = true;
@@ -375,13 +410,54 @@ static options_outcome take_next(parser *state, bool *options_ended) {
     return take_option(state, row, word[2] ? word + 2 : NULL);
   }
   const size_t length = strcspn(word + 2, "=");
-  const option *row = find_option(state->about, word + 2, length);
+  const option *row = option_find(state->about, word + 2, length);
   if (!row) return unknown_option(state, word);
   return take_option(state, row, word[2 + length] ? word + 2 + length + 1 : NULL);
 }
 
+static options_outcome take_all(parser *state) {
+  bool options_ended = false;
+  while (state->next < state->count) {
+    const options_outcome outcome = take_next(state, &options_ended);
+    if (outcome != OPTIONS_RUN) return outcome;
+  }
+  return OPTIONS_RUN;
+}
+
+/* What the job says and the command line does not. */
+static options_outcome take_job(const parser *over) {
+  settings *given = over->given;
+  const options_outcome read = job_read(over->about, given->job_path, &given->job);
+  if (read != OPTIONS_RUN) return read;
+  parser state = {.about = over->about, .given = given, .count = given->job->count, .words = given->job->words, .over = over};
+  return take_all(&state);
+}
+
+void options_release(settings *given) {
+  job_free(given->job);
+  given->job = NULL;
+}
+
+const char **options_command(const settings *given, int *count) {
+  const int job_words = given->job ? given->job->count : 0;
+  const char **words = malloc((size_t)(2 + job_words + given->word_count) * sizeof *words);
+  *count = 0;
+  if (!words) return NULL;
+  words[(*count)++] = "laves";
+  words[(*count)++] = given->command;
+  for (int i = 0; i < job_words; ++i) {
+    if (given->job->used[i]) words[(*count)++] = given->job->words[i];
+  }
+  for (int i = 0; i < given->word_count; ++i) {
+    if (i < given->job_first || i >= given->job_after) words[(*count)++] = given->words[i];
+  }
+  return words;
+}
+
 options_outcome options_parse(const command *about, int count, char **words, settings *given) {
   *given = (settings){.command = about->name,
+                      .word_count = count,
+                      .words = words,
                       .volume_length = -1,
                       .order = 1,
                       .guarantee = 14.4,
@@ -401,11 +477,9 @@ options_outcome options_parse(const command *about, int count, char **words, set
   given->window.values[1] = 125;
   for (int i = 0; i < 3; ++i) given->cells.values[i] = 4;
   parser state = {.about = about, .given = given, .count = count, .words = words};
-  bool options_ended = false;
-  while (state.next < count) {
-    const options_outcome outcome = take_next(&state, &options_ended);
-    if (outcome != OPTIONS_RUN) return outcome;
-  }
+  options_outcome outcome = take_all(&state);
+  if (outcome == OPTIONS_RUN && given->job_path) outcome = take_job(&state);
+  if (outcome != OPTIONS_RUN) return outcome;
   if (about->argument && (!given->input || given->input[0] == '\0')) {
     char sentence[SENTENCE_CAPACITY];
     snprintf(sentence, sizeof sentence, "%s is missing: laves %s %s", about->argument, about->name, about->argument);

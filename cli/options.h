@@ -28,10 +28,17 @@ typedef struct option_alignment {
   double rotation[9];
 } option_alignment;
 
-/* What the command line said; members of options that were not given hold the table's defaults. */
+struct job; /* job.h */
+
+/* What the command line and its job file said; members of options that were not given hold the table's defaults. */
 typedef struct settings {
   const char *command;
-  const char *input; /* NULL where the command takes none */
+  const char *job_path;     /* NULL: not given */
+  struct job *job;          /* what it said; NULL: nothing */
+  int word_count;           /* of the command line, behind the command's name */
+  char **words;             /* of the command line */
+  int job_first, job_after; /* those of them that are --job itself */
+  const char *input;        /* NULL where the command takes none */
   option_texts outputs;
   const char *boundary, *json, *surface; /* NULL: not given */
   const char *certificate, *write_certificate, *report;
@@ -122,11 +129,22 @@ extern const option option_rows[];
 extern const size_t option_count;
 
 const command *command_find(const char *name);
+/* The option of a command with that name, or NULL. */
+const option *option_find(const command *about, const char *name, size_t length);
+/* The name of a command's option that is nearest to a misspelt one, or NULL. */
+const char *option_nearest(const command *about, const char *name);
 
-typedef enum options_outcome { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_WRONG } options_outcome;
+typedef enum options_outcome { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_WRONG, OPTIONS_UNREADABLE, OPTIONS_NO_MEMORY } options_outcome;
 
-/* Reads the words after the command's name. OPTIONS_WRONG: what is wrong has been said on stderr. */
+/* Reads the words after the command's name, and the job file that they name; what stands on the command line counts.
+ * WRONG, UNREADABLE (the job file), NO_MEMORY: that has been said on stderr. Settings point into the words; release them in any
+ * case. */
 options_outcome options_parse(const command *about, int count, char **words, settings *given);
+void options_release(settings *given);
+
+/* The command that does the same without a job file: "laves", its name, the words of the job that count, those of the command
+ * line. *count of them in an array for free(); NULL without memory. */
+const char **options_command(const settings *given, int *count);
 
 /* ---- words that parser and help share ---- */
 

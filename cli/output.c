@@ -41,8 +41,8 @@ static bool is_among(const option_texts *list, const struct stat *target) {
 /* Whether an output, under whatever name, is a file that the command reads. */
 static bool is_input(const session *run, const char *source, const struct stat *target) {
   const settings *given = run->given;
-  return is_same_file(source, target) || is_same_file(given->surface, target) || is_among(&given->size_fields, target) ||
-         is_among(&given->features, target);
+  return is_same_file(source, target) || is_same_file(given->job_path, target) || is_same_file(given->surface, target) ||
+         is_among(&given->size_fields, target) || is_among(&given->features, target);
 }
 
 static bool stat_folder(const char *path, struct stat *status) {

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "text.h"
@@ -124,4 +125,15 @@ void statement_write_json(json *out, const laves_certificate *c) {
   json_numbers(out, "attained", (const double[2]){c->attained_min_dihedral, c->attained_max_dihedral}, 2);
   json_boolean(out, "promise_holds", c->promise_holds);
   write_exceptions(out, c);
+}
+
+laves_result statement_make(session *run, const laves_mesh *mesh, laves_certify_options *options,
+                            laves_certificate *certificate) {
+  const char **words = options_command(run->given, &options->command_count);
+  if (!words) return session_fail(run, LAVES_ERROR_MEMORY, "no memory for the words of the command");
+  options->command = words;
+  const laves_result result = laves_certify(run->context, mesh, options, certificate, &run->error);
+  options->command = NULL;
+  free(words);
+  return session_settle(run, result);
 }

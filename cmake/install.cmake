@@ -1,15 +1,18 @@
 # What `cmake --install` puts in place: library, headers, program, laves.pc for pkg-config, and the files by which
 # find_package(laves) gives the target laves::laves. A static library names what it leans on, so both find it.
+# Components, which become packages: library, development, program, python (package.cmake).
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/laves)
 
-install(TARGETS laves EXPORT laves-targets)
-install(DIRECTORY include/laves/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/laves FILES_MATCHING PATTERN "*.h")
-install(FILES ${PROJECT_BINARY_DIR}/include/laves/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/laves)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(TARGETS laves EXPORT laves-targets
+  LIBRARY COMPONENT library NAMELINK_COMPONENT development
+  ARCHIVE COMPONENT development RUNTIME COMPONENT library)
+install(DIRECTORY include/laves/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/laves COMPONENT development FILES_MATCHING PATTERN "*.h")
+install(FILES ${PROJECT_BINARY_DIR}/include/laves/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/laves COMPONENT development)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 if(TARGET laves-program)
-  install(TARGETS laves-program)
+  install(TARGETS laves-program COMPONENT program)
 endif()
 
 # Man page and completion, which the program prints from its table of options: where it can be run while it is built.
@@ -23,7 +26,7 @@ if(TARGET laves-program AND (NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMPILING_EM
               "-DOPTIONS=${options}" "-DOUTPUT=${help_dir}/${file}" -P ${PROJECT_SOURCE_DIR}/cmake/print_help.cmake
       DEPENDS laves-program ${PROJECT_SOURCE_DIR}/cmake/print_help.cmake VERBATIM)
     set_property(GLOBAL APPEND PROPERTY LAVES_HELP_FILES ${help_dir}/${file})
-    install(FILES ${help_dir}/${file} DESTINATION ${folder})
+    install(FILES ${help_dir}/${file} DESTINATION ${folder} COMPONENT program)
   endfunction()
   laves_print_help(laves.1 ${CMAKE_INSTALL_MANDIR}/man1 --man)
   laves_print_help(laves ${CMAKE_INSTALL_DATADIR}/bash-completion/completions --completion bash)
@@ -52,13 +55,20 @@ if(NOT BUILD_SHARED_LIBS)
   set(LAVES_PC_LIBS_PRIVATE "")
   set(LAVES_PC_CFLAGS "-DLAVES_STATIC")
 endif()
+# The way up from the file's folder, so that a copy works wherever it is; the library's folder may be lib or lib/TRIPLET.
+set(LAVES_PC_PREFIX ${CMAKE_INSTALL_PREFIX})
+if(NOT IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
+  file(RELATIVE_PATH LAVES_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  set(LAVES_PC_PREFIX "\${pcfiledir}/${LAVES_PC_PREFIX}")
+  string(REGEX REPLACE "/$" "" LAVES_PC_PREFIX "${LAVES_PC_PREFIX}")
+endif()
 configure_file(cmake/laves.pc.in ${PROJECT_BINARY_DIR}/laves.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/laves.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES ${PROJECT_BINARY_DIR}/laves.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 
 # find_package
-install(EXPORT laves-targets NAMESPACE laves:: DESTINATION ${package_dir})
+install(EXPORT laves-targets NAMESPACE laves:: DESTINATION ${package_dir} COMPONENT development)
 configure_package_config_file(cmake/laves-config.cmake.in ${PROJECT_BINARY_DIR}/laves-config.cmake
   INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/laves-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/laves-config.cmake ${PROJECT_BINARY_DIR}/laves-config-version.cmake
-  DESTINATION ${package_dir})
+  DESTINATION ${package_dir} COMPONENT development)

@@ -21,7 +21,7 @@ def code_of(text):
     """The header without comments, and without what is for other compilers."""
     text = re.sub(r"/\*.*?\*/", "", text, flags=re.S)
     text = re.sub(r"//[^\n]*", "", text)
-    return text.replace("\\\n", " ")
+    return text.replace("\\\n", " ").replace("*const *", "**")
 
 
 def lists_of(code):
@@ -71,8 +71,8 @@ class Header:
             return {0: "None", 1: "c_void_p", 2: "POINTER(c_void_p)"}[stars]
         if base in self.handles:
             return {1: "c_void_p", 2: "POINTER(c_void_p)"}[stars]
-        if base == "char" and stars == 1:
-            return "c_char_p"
+        if base == "char" and stars in (1, 2):
+            return {1: "c_char_p", 2: "POINTER(c_char_p)"}[stars]
         if base in SCALARS:
             name = SCALARS[base]
         elif base in self.enums:

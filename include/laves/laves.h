@@ -19,7 +19,7 @@
 
 #include "laves/version.h"
 
-#if defined(LAVES_STATIC)
+#if defined(LAVES_STATIC) && !defined(LAVES_BUILD)
 #define LAVES_API
 #elif defined(_WIN32) && defined(LAVES_BUILD)
 #define LAVES_API __declspec(dllexport)
@@ -897,6 +897,7 @@ LAVES_API laves_result laves_improve(laves_context *context, const laves_mesh *m
 /* ---- certificate -------------------------------------------------------------------------------------------------- */
 
 enum { LAVES_HASH_CAPACITY = 65, LAVES_NAME_CAPACITY = 256, LAVES_EXCEPTION_CAPACITY = 192 };
+enum { LAVES_COMMAND_CAPACITY = 8192, LAVES_COMMAND_WORDS = 500 };
 
 /// What can be out of order: X(name, key in JSON, phrase). The value of an exception is the angle in degrees (or the
 /// volume-length ratio, below 1), the distance, or the thickness that its kind speaks of, else NAN.
@@ -964,6 +965,9 @@ typedef struct laves_certificate {
   char input_format[48];                 ///< as in laves_domain_info
   char input_hash[LAVES_HASH_CAPACITY];  ///< SHA-256 of the file's bytes, or of the expression's text; empty: not known
 
+  int command_count;                     ///< words of the command that makes the mesh again; 0: not known
+  char command[LAVES_COMMAND_CAPACITY];  ///< these words, UTF-8, each ended by a NUL
+
   bool has_options;  ///< the mesh was made by laves with these options, and the report's figures below are known
   laves_options options;
   double size;                                         ///< that was used
@@ -1012,9 +1016,12 @@ typedef struct laves_certify_options {
   double min_dihedral, max_dihedral, volume_length;     ///< asked window where there are no options; default as there
   // Features to be measured where there are no options (with them: those that they ask for). They need the domain and
   // `distances`.
-  double feature_angle;  ///< as laves_options.feature_angle; default 0: none are looked for
-  bool feature_tags;     ///< as laves_options.feature_tags
-  double feature_size;   ///< as laves_feature_options.size; default 0: that of the mesh's exact tiles, where it has many
+  double feature_angle;        ///< as laves_options.feature_angle; default 0: none are looked for
+  bool feature_tags;           ///< as laves_options.feature_tags
+  double feature_size;         ///< as laves_feature_options.size; default 0: that of the mesh's exact tiles, where it has many
+  const char *const *command;  ///< [command_count] words of the command that makes the mesh again, to be stated as they are;
+                               ///< NULL: none. Left out, too, where they are no UTF-8 or more than a certificate holds
+  int command_count;           ///< at most LAVES_COMMAND_WORDS, whose bytes with a NUL each are LAVES_COMMAND_CAPACITY at most
   uint32_t cookie;
 } laves_certify_options;
 

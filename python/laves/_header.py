@@ -111,6 +111,8 @@ CONSTANTS = {
     "LAVES_HASH_CAPACITY": 65,
     "LAVES_NAME_CAPACITY": 256,
     "LAVES_EXCEPTION_CAPACITY": 192,
+    "LAVES_COMMAND_CAPACITY": 8192,
+    "LAVES_COMMAND_WORDS": 500,
     "LAVES_OK": 0,
     "LAVES_TARGET_MISSED": 1,
     "LAVES_ERROR_OPTION": 2,
@@ -615,6 +617,8 @@ class laves_certificate(Structure):
         ("input_kind", c_char * 16),
         ("input_format", c_char * 48),
         ("input_hash", c_char * 65),
+        ("command_count", c_int),
+        ("command", c_char * 8192),
         ("has_options", c_bool),
         ("options", laves_options),
         ("size", c_double),
@@ -665,6 +669,8 @@ class laves_certify_options(Structure):
         ("feature_angle", c_double),
         ("feature_tags", c_bool),
         ("feature_size", c_double),
+        ("command", POINTER(c_char_p)),
+        ("command_count", c_int),
         ("cookie", c_uint32),
     ]
 

@@ -24,6 +24,8 @@ class Certificate(Record):
 
     def __init__(self, session: Session, structure):
         super().__init__(structure)
+        words = bytes(structure)[type(structure).command.offset:].split(b"\0", structure.command_count)[:structure.command_count]
+        self.__dict__["command"] = [word.decode("utf-8") for word in words]
         self.__dict__["_of"] = (session, structure)
 
     def as_dict(self) -> "dict[str, typing.Any]":
@@ -342,10 +344,13 @@ class Mesh:
 
     def certify(self, domain: "Domain | None" = None, *, progress=None, timeout: "float | None" = None, **options) -> Certificate:
         """States what the mesh is. domain: to measure distances against; None: its own, if it knows that. Options as in
-        laves_certify_options: distances, and, where the mesh was not made here, promised_min_dihedral and so on."""
+        laves_certify_options: distances, command (a list of words that make the mesh again), and, where the mesh was not made here,
+        promised_min_dihedral and so on."""
         own = domain is None or domain is self.domain
         domain = self.domain if domain is None else domain
+        words = [os.fsencode(word) for word in options.pop("command", None) or []]
         wished = fill(lib.laves_certify_options_default(), options, "certify()")
+        wished.command, wished.command_count = (ctypes.c_char_p * len(words))(*words), len(words)
         wished.domain = _pointer(domain)
         if domain is not None:
             wished.input = domain._name

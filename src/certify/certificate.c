@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "base/sha256.h"
+#include "base/utf8.h"
 #include "certify/check_features.h"
 #include "io/file.h"
 
@@ -76,6 +77,22 @@ static laves_result describe_input(laves_context *context, const laves_certify_o
   const bool hashed = laves__sha256_of(context, bytes, length, c->input_hash);
   laves__free(context, bytes, length + 1, 1);
   return hashed ? LAVES_OK : laves__fail_cancelled(error);
+}
+
+/* A command is there whole or not at all: a part of it would make another mesh. */
+static void note_command(const laves_certify_options *options, laves_certificate *c) {
+  size_t used = 0;
+  if (!options->command || options->command_count > LAVES_COMMAND_WORDS) return;
+  for (int i = 0; i < options->command_count; i++) {
+    const size_t bytes = strlen(options->command[i]) + 1;
+    if (bytes > sizeof c->command - used || !laves__is_utf8(options->command[i])) {
+      memset(c->command, 0, sizeof c->command);
+      return;
+    }
+    memcpy(c->command + used, options->command[i], bytes);
+    used += bytes;
+  }
+  c->command_count = options->command_count > 0 ? options->command_count : 0;
 }
 
 static void note_making(const laves_certify_options *options, laves_certificate *c) {
@@ -191,6 +208,7 @@ laves_result laves_certify(laves_context *context, const laves_mesh *mesh, const
   if (result == LAVES_OK) result = laves__mesh_digest(context, mesh, c->mesh_hash, error);
   if (result == LAVES_OK) result = laves__find_tiles(context, mesh, c, error);
   note_making(options, c);
+  note_command(options, c);
   find_window(c);
   explain_distances(c);
   if (result == LAVES_OK) result = measure_features(context, mesh, &survey.boundary, options, c, &part, error);

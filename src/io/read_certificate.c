@@ -175,6 +175,27 @@ static laves_result read_group(const reader *r, const laves__member_group *group
   return read_members(r, group->name, object);
 }
 
+/* ---- command ---- */
+
+/* Older certificates have none. */
+static laves_result read_command(const reader *r, const laves__json *root) {
+  const laves__json *words = laves__json_member(root, "command");
+  laves_certificate *c = r->certificate;
+  if (!words || is_null(words)) return LAVES_OK;
+  static const char need[] = "must be an array of words that is not too long, or null";
+  if (!laves__json_is(words, LAVES__JSON_ARRAY) || words->count > LAVES_COMMAND_WORDS) return fail_member(r, "", "command", need);
+  size_t used = 0;
+  for (size_t i = 0; i < words->count; i++) {
+    const laves__json *word = laves__json_at(words, i);
+    const size_t bytes = is_text(word) ? strlen(word->text) + 1 : 0;
+    if (bytes == 0 || bytes > sizeof c->command - used) return fail_member(r, "", "command", need);
+    memcpy(c->command + used, word->text, bytes);
+    used += bytes;
+  }
+  c->command_count = (int)words->count;
+  return LAVES_OK;
+}
+
 /* ---- exceptions ---- */
 
 static int find_key(const laves__json *value, const char *(*key)(int), int count) {
@@ -249,6 +270,7 @@ static laves_result read_root(const reader *r, const laves__json *root) {
   laves_result result = LAVES_OK;
   for (size_t i = 0; i < laves__certificate_group_count && result == LAVES_OK; i++)
     result = read_group(r, &laves__certificate_groups[i], root);
+  if (result == LAVES_OK) result = read_command(r, root);
   return result == LAVES_OK ? read_exceptions(r, root) : result;
 }
 

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/utf8.h"
 #include "io/certificate_table.h"
 #include "io/number_text.h"
 #include "io/output.h"
@@ -17,23 +18,11 @@ static void begin_item(writer *w, const char *indent, const char *key) {
   w->comma = true;
 }
 
-/* Length of the UTF-8 sequence at `text`, 0 when it is none (RFC 3629: no overlong forms, no surrogates). */
-static size_t sequence_length(const unsigned char *text) {
-  const unsigned char lead = text[0];
-  if (lead < 0x80) return 1;
-  const size_t length = lead >= 0xc2 && lead <= 0xdf ? 2 : (lead & 0xf0) == 0xe0 ? 3 : lead >= 0xf0 && lead <= 0xf4 ? 4 : 0;
-  for (size_t i = 1; i < length; i++)
-    if ((text[i] & 0xc0) != 0x80) return 0;
-  if ((lead == 0xe0 && text[1] < 0xa0) || (lead == 0xed && text[1] > 0x9f)) return 0;
-  if ((lead == 0xf0 && text[1] < 0x90) || (lead == 0xf4 && text[1] > 0x8f)) return 0;
-  return length;
-}
-
 /* What is no UTF-8 becomes the replacement character. */
 static void put_text(writer *w, const char *text) {
   laves__output_bytes(&w->out, "\"", 1);
   for (const unsigned char *at = (const unsigned char *)text; *at;) {
-    const size_t length = sequence_length(at);
+    const size_t length = laves__utf8_length(at);
     if (length == 0)
       laves__output_printf(&w->out, "\\ufffd");
     else if (*at < 0x20 || *at == 0x7f)
@@ -139,6 +128,19 @@ static void put_exception(writer *w, const laves_exception *e) {
   laves__output_bytes(&w->out, "}", 1);
 }
 
+/* The words that make the mesh again, or null. */
+static void put_command(writer *w, const laves_certificate *certificate) {
+  begin_item(w, "  ", "command");
+  laves__output_bytes(&w->out, certificate->command_count > 0 ? "[" : "null", certificate->command_count > 0 ? 1 : 4);
+  const char *word = certificate->command;
+  for (int i = 0; i < certificate->command_count; i++) {
+    if (i > 0) laves__output_bytes(&w->out, ", ", 2);
+    put_text(w, word);
+    word += strlen(word) + 1;
+  }
+  if (certificate->command_count > 0) laves__output_bytes(&w->out, "]", 1);
+}
+
 static void put_exceptions(writer *w, const laves_certificate *certificate) {
   begin_item(w, "  ", "exceptions");
   laves__output_printf(&w->out, "{\n    \"counts\": {");
@@ -163,6 +165,7 @@ static void put_all(writer *w, const laves_certificate *certificate) {
   begin_item(w, "  ", "version");
   put_text(w, certificate->version);
   for (size_t i = 0; i < laves__certificate_group_count; i++) put_group(w, certificate, &laves__certificate_groups[i]);
+  put_command(w, certificate);
   put_exceptions(w, certificate);
   laves__output_bytes(&w->out, "\n}\n", 3);
 }

@@ -39,6 +39,7 @@ end_header
 SIZES = "View \"size\" {\nSS(-9,-9,-9, 99,-9,-9, -9,99,-9, -9,-9,99){1, 2, 2, 2};\n};\n"
 TEXTS = {
     "part.lua": f"return {PART}\n",
+    "part.toml": f'input = "{PART}"\nrel-size = 0.07\n[mesh]\noutput = ["part.vtu"]\n',
     "scan.ply": OPEN_BOX,
     "drawn.txt": DRAWN,
     "seams.txt": DRAWN,
@@ -74,7 +75,7 @@ def inputs_of(command):
     words, found = command.split("#")[0].split(), []
     for before, word in zip([""] + words, words):
         if before not in OUTPUTS:
-            found += FILE.findall(word)
+            found += FILE.findall(word) + [word] * (word in TEXTS)
     return found
 
 
@@ -145,7 +146,7 @@ def smaller(command, block, page):
     """The command as it is run: replaced where a comment says so, with few tetrahedra or pixels where it asks for no size."""
     for old, new in [rest.split() for rest in block.note("replace")] + REPLACED.get(page, []):
         command = command.replace(old, new)
-    if command.startswith("laves mesh ") and not SIZED.search(command):
+    if command.startswith("laves mesh ") and "--job" not in command and not SIZED.search(command):
         command = command.replace("laves mesh ", f"laves mesh {' '.join(COARSE)} ", 1)
     if command.startswith("laves view ") and "--size" not in command:
         command = command.replace("laves view ", "laves view --size 320x240 ", 1)
@@ -250,6 +251,9 @@ class Page:
 
     def block(self, block):
         if block.note("skip"):
+            return
+        if block.note("file"):
+            (self.folder / block.note("file")[0]).write_text("\n".join(block.lines) + "\n")
             return
         if block.language == "lua":
             self.script(block)

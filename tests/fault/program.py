@@ -29,6 +29,8 @@ COMMANDS = [
     (["mesh", "in.off", "--size", "0.3", "-o", "out.msh", "--boundary", "skin.ply", "--json", "out.json", "--refine",
       "curve:curve.txt=0.2", "--features", "line.txt"], ["out.msh", "skin.ply", "out.json", "out.certificate.json"]),
     (["mesh", "sphere(1)", "--size", "0.6", "-o", "out.node", "--certificate", "none"], ["out.node", "out.ele", "out.face"]),
+    (["mesh", "--job", "job.toml", "--threads", "1"], ["out.msh", "out.cert"]),
+    (["mesh", "--job", "in.json", "-o", "out.msh", "--certificate", "out.cert"], ["out.msh", "out.cert"]),
     (["check", "in.vtu", "--surface", "in.off", "--features", "--json", "out.json", "--write-certificate", "out.cert"],
      ["out.json", "out.cert"]),
     (["view", "in.vtu", "-o", "out.png", "--size", "64x64", "--creases", "2", "--cut", "x"], ["out.png"]),
@@ -48,7 +50,8 @@ class Place:
         self.put("in.off", OFF)
         self.put("curve.txt", "0 0 0\n0.5 0.5 0\n")
         self.put("line.txt", "0.1 0.1 0\n0.3 0.2 0\n")
-        subprocess.run([self.program, "mesh", "in.off", "--size", "0.3", "-q", "-o", "in.vtu", "--certificate", "none"],
+        self.put("job.toml", 'input = "in.off"\nsize = 0.3\n[mesh]\noutput = ["out.msh"]\ncertificate = "out.cert"\n')
+        subprocess.run([self.program, "mesh", "in.off", "--size", "0.3", "-q", "-o", "in.vtu", "--certificate", "in.json"],
                        cwd=self.folder, check=True)
         self.inputs = sorted(os.listdir(self.folder))
 

@@ -83,6 +83,10 @@ class Checks(unittest.TestCase):
             path.write_text("{}")
             self.assertRaises(laves.InputError, laves.Certificate.read, path)
         self.assertFalse(self.mesh.certify(distances=False).check.has_distance)
+        self.assertEqual(certificate.command, [])
+        words = ["laves", "mesh", "", "é"]
+        self.assertEqual(self.mesh.certify(distances=False, command=words).command, words)
+        self.assertEqual(self.mesh.certify(distances=False, command=words).as_dict()["command"], words)
         self.assertIn("holds", repr(certificate))
 
 

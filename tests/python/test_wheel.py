@@ -1,7 +1,8 @@
 """The wheel: what is in it, and that pip installs it into a fresh environment without a network.
 
     test_wheel.py           packs the library and the program of this build
-    test_wheel.py --full    compiles them, as `pip install .` does in a clean checkout; .ci/run does that once"""
+    test_wheel.py --full    compiles them, as `pip install .` does in a clean checkout; .ci/run does that once. With a folder in
+                            LAVES_WHEEL_FOLDER, sources and build (`build`) stay there, for tests/install/packages"""
 import base64
 import csv
 import hashlib
@@ -25,6 +26,7 @@ FULL = "--full" in sys.argv
 if FULL:
     sys.argv.remove("--full")
 
+KEPT = os.environ.get("LAVES_WHEEL_FOLDER")
 CLEAN = {name: value for name, value in os.environ.items() if not name.startswith(("LAVES_", "PYTHONPATH", "PIP_"))}
 
 TRY = """
@@ -48,8 +50,13 @@ def have(module):
 class Wheel(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.mkdtemp()
-        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        if KEPT:
+            shutil.rmtree(KEPT, ignore_errors=True)
+            os.makedirs(KEPT)
+            cls.folder = os.path.abspath(KEPT)
+        else:
+            cls.folder = tempfile.mkdtemp()
+            cls.addClassCleanup(shutil.rmtree, cls.folder)
         if FULL:
             name = cls.by_pip()
         else:
@@ -69,8 +76,9 @@ class Wheel(unittest.TestCase):
         name = cls.by_backend("build_sdist")
         with tarfile.open(pathlib.Path(cls.folder, name)) as archive:
             archive.extractall(cls.folder)
-        subprocess.check_call([sys.executable, "-m", "pip", "wheel", "--quiet", "--no-index", "--no-deps", "--wheel-dir", cls.folder,
-                               pathlib.Path(cls.folder, name[:-len(".tar.gz")])], env=CLEAN)
+        settings = ["--config-settings", f"build-dir={os.path.join(cls.folder, 'build')}"] if KEPT else []
+        subprocess.check_call([sys.executable, "-m", "pip", "wheel", "--quiet", "--no-index", "--no-deps", *settings, "--wheel-dir",
+                               cls.folder, pathlib.Path(cls.folder, name[:-len(".tar.gz")])], env=CLEAN)
         return next(pathlib.Path(cls.folder).glob("*.whl")).name
 
     def test_content(self):

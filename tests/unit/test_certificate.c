@@ -452,6 +452,45 @@ static void graded_tiles(void **state) {
   fixture_folder_remove(folder);
 }
 
+/* ---- command ---- */
+
+static laves_certificate certify_command(laves_context *context, const laves_mesh *mesh, const char *const *words, int count) {
+  laves_certify_options options = laves_certify_options_default();
+  options.command = words;
+  options.command_count = count;
+  return certify(context, mesh, &options);
+}
+
+/* The words of a command go through a file as they are, whole or not at all. */
+static void commands(void **state) {
+  char folder[FIXTURE_FOLDER_MAX], path[FIXTURE_FOLDER_MAX + 20];
+  static char long_word[LAVES_COMMAND_CAPACITY];
+  static const char *many[LAVES_COMMAND_WORDS + 1];
+  static const char *const words[] = {"laves", "mesh", "", "a \"b\"\\\n", "\xc3\xa9"};
+  static const char bytes[] = "laves\0mesh\0\0a \"b\"\\\n\0\xc3\xa9";
+  assert_true(fixture_folder_make(folder));
+  snprintf(path, sizeof path, "%s/a.json", folder);
+  laves_mesh *mesh = fixture_cubes(*state, 1, 1, 1, NULL, NULL);
+  const laves_certificate c = certify_command(*state, mesh, words, 5);
+  laves_certificate read;
+  assert_int_equal(laves_certificate_write(*state, &c, path, NULL), LAVES_OK);
+  assert_int_equal(laves_certificate_read(*state, path, &read, NULL), LAVES_OK);
+  assert_int_equal(read.command_count, 5);
+  assert_memory_equal(read.command, bytes, sizeof bytes);
+
+  for (int i = 0; i <= LAVES_COMMAND_WORDS; i++) many[i] = "w";
+  assert_int_equal(certify_command(*state, mesh, many, LAVES_COMMAND_WORDS).command_count, LAVES_COMMAND_WORDS);
+  assert_int_equal(certify_command(*state, mesh, many, LAVES_COMMAND_WORDS + 1).command_count, 0);
+  memset(long_word, 'x', sizeof long_word - 1);
+  assert_int_equal(certify_command(*state, mesh, (const char *[]){long_word}, 1).command_count, 1);
+  const laves_certificate cut = certify_command(*state, mesh, (const char *[]){"a", long_word}, 2);
+  assert_int_equal(cut.command_count, 0);
+  assert_int_equal(cut.command[0], 0);
+  assert_int_equal(certify_command(*state, mesh, (const char *[]){"a", "\xe9"}, 2).command_count, 0);
+  laves_mesh_free(mesh);
+  fixture_folder_remove(folder);
+}
+
 /* ---- features ---- */
 
 static laves_certificate certify_features(laves_context *context, const laves_mesh *mesh, const laves_domain *domain,
@@ -680,6 +719,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(through_a_file, set_up, tear_down),
       cmocka_unit_test_setup_teardown(features_asked, set_up, tear_down),
       cmocka_unit_test_setup_teardown(graded_tiles, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(commands, set_up, tear_down),
       cmocka_unit_test_setup_teardown(kept_features, set_up, tear_down),
       cmocka_unit_test_setup_teardown(lost_features, set_up, tear_down),
       cmocka_unit_test_setup_teardown(sharp_input, set_up, tear_down),
