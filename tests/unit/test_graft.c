@@ -179,13 +179,13 @@ static void threads_change_nothing(void **state) {
 /* A cube with a spot of noise on one side: the promise holds, and the creases that are far from the spot are kept. */
 static void a_spot_of_noise_costs_no_creases_elsewhere(void **state) {
   (void)state;
-  static const char *const spotted = "box(2) - (gyroid{period=0.23, thickness=0.07} & sphere(0.25):move(1,0,0))";
+  static const char *const spotted = "box(2) - (gyroid{period=0.17, thickness=0.07} & sphere(0.25):move(1,0,0))";
   char hash[2][33];
   for (int i = 0; i < 2; i++) {
     laves_context_options context_options = laves_context_options_default();
     context_options.thread_count = i + 1;
     laves_context *context = laves_context_create(&context_options);
-    laves_options options = options_of_size(0.12);
+    laves_options options = options_of_size(0.1);
     options.guarantee = 28;
     laves_report report;
     laves_mesh *mesh = mesh_of_expression(context, spotted, &options, &report);
