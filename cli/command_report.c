@@ -39,7 +39,8 @@ static laves_result report_steps(session *run, report_run *all) {
   if (given->outputs.count != 1)
     return session_fail(run, LAVES_ERROR_OPTION, "'laves report' needs one page to write: --output FILE.html");
   const char *path = given->outputs.items[0];
-  laves_result result = outputs_check_text(run, path, given->input);
+  laves_result result = outputs_check_page(run, path);
+  if (result == LAVES_OK) result = outputs_check_text(run, path, given->input);
   if (result == LAVES_OK) result = outputs_check_json(run, given->input);
   const double start = progress_now();
   if (result == LAVES_OK) result = session_settle(run, laves_mesh_read(run->context, given->input, &all->mesh, &run->error));

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "command.h"
 #include "input.h"
@@ -224,8 +225,9 @@ static laves_result read_plot(session *run, view_job *job) {
   const char *extension = strrchr(path, '.');
   const bool is_svg = extension && strcmp(extension, ".svg") == 0;
   if (!given->plot) {
-    if (!is_svg) return LAVES_OK;
-    return session_fail(run, LAVES_ERROR_OPTION, "pictures are PNG files, '%.200s' is none; SVG is for plots: --plot all", path);
+    if (extension && strcasecmp(extension, ".png") == 0) return LAVES_OK;
+    return session_fail(run, LAVES_ERROR_OPTION, "pictures are PNG files (.png), '%.200s' is none; SVG is for plots: --plot all",
+                        path);
   }
   const int which = word_index(given->plot, names, 4);
   if (which < 0) {

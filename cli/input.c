@@ -33,6 +33,9 @@ static bool is_bare_word(const char *words) {
 static laves_result open_expression(session *run, const char *words, input *in) {
   const laves_result result = laves_domain_from_expression(run->context, words, &in->domain, &run->error);
   if (result != LAVES_ERROR_INPUT || !is_bare_word(words)) return result;
+  const char *extension = strrchr(words, '.');
+  if (extension && isalpha((unsigned char)extension[1]))
+    return session_fail(run, result, "the file '%.300s' does not exist", words);
   char reason[sizeof run->error.text];
   memcpy(reason, run->error.text, sizeof reason);
   return session_fail(run, result, "there is no file '%.150s', and it is no expression either: %.300s", words, reason);

@@ -156,12 +156,20 @@ laves_result outputs_check_report(session *run, const char *source, const output
   const char *path = run->given->report;
   if (run->given->stream)
     return session_fail(run, LAVES_ERROR_OPTION, "a report needs the mesh in memory; leave --report away, or --stream");
+  const laves_result page = outputs_check_page(run, path);
+  if (page != LAVES_OK) return page;
   run->json_refused = run->given->json && is_same_place(run->given->json, path); /* it must not take the place of what is there */
   bool twice = run->json_refused || is_same_place(plan->certificate, path) ||
                (run->given->defects && is_same_place(run->given->defects, path));
   for (int i = 0; i < plan->count; ++i) twice = twice || is_same_place(plan->items[i].path, path);
   if (twice) return session_fail(run, LAVES_ERROR_OPTION, "'%.200s' is named twice", path);
   return check_target(run, path, source, true);
+}
+
+laves_result outputs_check_page(session *run, const char *path) {
+  const char *extension = strrchr(path, '.');
+  if (extension && (strcasecmp(extension, ".html") == 0 || strcasecmp(extension, ".htm") == 0)) return LAVES_OK;
+  return session_fail(run, LAVES_ERROR_OPTION, "a report is an HTML page (.html), '%.200s' is none", path);
 }
 
 /* Of what goes beside the mesh: --defects, which may not be the input or a device, and --json. */

@@ -31,6 +31,8 @@ laves_result outputs_plan_certificate(session *run, const char *source, outputs 
 /* Makes sure that a file of words (JSON, a certificate) can be written. */
 laves_result outputs_check_text(session *run, const char *path, const char *source);
 
+/* The page of a report ends in .html. */
+laves_result outputs_check_page(session *run, const char *path);
 /* Makes sure that the page of --report can be written: it has a name of its own, and the mesh stays in memory. */
 laves_result outputs_check_report(session *run, const char *source, const outputs *plan);
 

@@ -21,6 +21,17 @@ static void judge_parts(laves__run *r, const laves_mesh *mesh) {
                 r->regions.interfaces);
 }
 
+/* On surfaces that stay open creases are not looked for. */
+static void warn_of_open(laves__run *r) {
+  const laves_domain_info *info = &r->domain->info;
+  const double *place = info->defect_place[LAVES_DEFECT_OPEN_EDGE];
+  if (info->kind != LAVES_DOMAIN_SURFACE || r->domain->oracle.find_features || !(r->options->feature_angle > 0)) return;
+  laves__warn(
+      r,
+      "the surface is open, so its sharp edges were not looked for, and are rounded to the size; close it, as near (%g, %g, %g)",
+      place[0], place[1], place[2]);
+}
+
 /* What of the features is kept. */
 static laves_result judge_features(laves__run *r) {
   laves_report *report = r->report;
@@ -28,6 +39,7 @@ static laves_result judge_features(laves__run *r) {
   report->feature_size = laves__least_size(r);
   report->creases_dropped = r->features.dropped_count;
   report->creases_joined = r->features.joined_count;
+  warn_of_open(r);
   if (!r->frame.features) return LAVES_OK;
   const laves_result result = laves__tally_features(&r->frame, &r->layer, &tally, r->error);
   if (result != LAVES_OK) return result;
@@ -39,12 +51,10 @@ static laves_result judge_features(laves__run *r) {
   report->features_released = r->released;
   if (!tally.has_lost) return LAVES_OK;
   const laves__vec3 place = laves__frame_to_input(&r->frame, tally.lost);
-  laves__warn(
-      r,
-      "%.2f %% of the creases' length and %zu of %zu corners are kept; elsewhere they are closer to one another than the size of "
-      "%g allows, as near (%g, %g, %g)",
-      100 * tally.kept_length / fmax(tally.length, 1e-300), tally.kept_corners, tally.corners, r->frame.size, place.x, place.y,
-      place.z);
+  char corners[64] = "";
+  if (tally.corners > 0) snprintf(corners, sizeof corners, "; %zu of %zu corners are kept", tally.kept_corners, tally.corners);
+  laves__warn(r, "creases that are closer to one another than the size of %g allows are not kept, as near (%g, %g, %g)%s",
+              r->frame.size, place.x, place.y, place.z, corners);
   return LAVES_OK;
 }
 

@@ -23,9 +23,9 @@ static uint64_t hash_point(laves__vec3 p) { return mix(mix(mix(0x51ed270b, p.x),
 
 static bool same_point(laves__vec3 a, laves__vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
-/* first[i] receives the least index of a point equal to i among those that faces use (used[i]). */
-static bool find_equal_points(laves__surface *s, const laves__vec3 *points, const bool *used, size_t count, uint32_t *first,
-                              laves_domain_info *info) {
+/* first[i] receives the least index of a point equal to i among those that faces use (used[i]); told: repeats are noted. */
+static bool find_equal_points(laves__surface *s, const laves__vec3 *points, const bool *used, size_t count, bool told,
+                              uint32_t *first, laves_domain_info *info) {
   size_t slots = 16;
   while (slots < 2 * count) slots *= 2;
   uint32_t *table = laves__alloc(s->context, slots, sizeof *table);
@@ -42,7 +42,7 @@ static bool find_equal_points(laves__surface *s, const laves__vec3 *points, cons
       table[slot] = (uint32_t)i;
     } else {
       first[i] = table[slot];
-      laves__note_defect(info, s->defects, LAVES_DEFECT_REPEATED_POINT, 1, &points[i]);
+      if (told) laves__note_defect(info, s->defects, LAVES_DEFECT_REPEATED_POINT, 1, &points[i]);
     }
   }
   laves__free(s->context, table, slots, sizeof *table);
@@ -207,7 +207,9 @@ bool laves__surface_weld(laves__surface *s, const laves__surface_input *input, l
     points[i] = v3_add(v3_sub(input->points[i], origin), v3(0, 0, 0)); /* adding zero turns -0 into 0 */
   }
   if (!mark_used(context, input, used)) goto clean_up;
-  if (!find_equal_points(s, points, used, count, first, info)) goto clean_up;
+  /* Files in which every face has points of its own, as STL's are, repeat them by their nature. */
+  const bool told = count != 3 * input->triangle_count;
+  if (!find_equal_points(s, points, used, count, told, first, info)) goto clean_up;
   number_points(s, points, used, count, first, info);
   copy_faces(s, input, first, info);
   done = !laves__cancelled(context, "surface", 0.1) && laves__surface_drop_repeats(s, false, info);

@@ -181,7 +181,8 @@ static laves_result find_compressed(ranges *r, ranged *a, uint64_t at, laves_err
   if (head[1] == 0 || last > head[1] || head[0] - 1 > a->bytes / head[1] || (head[0] - 1) * head[1] + last != a->bytes)
     return fail_array(r, a, error);
   a->block_count = (size_t)head[0];
-  a->block_bytes = (size_t)head[1];
+  /* A single block may be announced as larger than what is in it. */
+  a->block_bytes = (size_t)(head[1] < a->bytes ? head[1] : a->bytes);
   return find_blocks(r, a, at, error);
 }
 
