@@ -83,8 +83,11 @@ static void say_tiles(const laves_certificate *c) {
 
 static void say_features(const laves_feature_check *f) {
   text_buffer creases;
-  text_say("  %s, %.2f %% of the length kept within %.4g; %zu of %zu corners kept", text_plural(&creases, f->creases, "crease"),
-           100 * f->kept_share, f->tolerance, f->corners_kept, f->corners - f->short_corners);
+  char corners[64] = "";
+  const size_t all = f->corners - f->short_corners;
+  if (all > 0) snprintf(corners, sizeof corners, "; %zu of %zu corners kept", f->corners_kept, all);
+  text_say("  %s, %.2f %% of the length kept within %.4g%s", text_plural(&creases, f->creases, "crease"), 100 * f->kept_share,
+           f->tolerance, corners);
 }
 
 /* Whether what leaves the promised window does so on creases of the input that are sharper, as far as is listed. */

@@ -160,13 +160,23 @@ static laves_result name_distant(const laves__frame *frame, const laves_domain *
   return result;
 }
 
-/* `first`: of the places found for this difference; the pinches before them may have had no part in it. */
+/* The place that tells most: a gap where holes were closed, else the first. `first`: of the places found for this difference; the
+ * pinches before them may have had no part in it. */
+static const laves_thin_place *telling_place(const laves_report *report, size_t first) {
+  for (size_t i = first; i < report->lost_count && report->genus < report->domain_genus; i++)
+    if (report->lost[i].kind == LAVES_THIN_GAP && isfinite(report->lost[i].thickness)) return &report->lost[i];
+  return &report->lost[first < report->lost_count ? first : 0];
+}
+
 static void say_difference(const laves__frame *frame, const laves_report *report, size_t first, char *text, size_t capacity) {
   int used = snprintf(text, capacity, "the boundary of the solid has %zu piece%s and genus %lld, that of the mesh %zu and %lld",
                       report->domain_pieces, report->domain_pieces == 1 ? "" : "s", (long long)report->domain_genus,
                       report->pieces, (long long)report->genus);
+  if (report->pieces == report->domain_pieces && report->genus < report->domain_genus && used >= 0 && (size_t)used < capacity)
+    used += snprintf(text + used, capacity - (size_t)used, ": %lld of %lld holes were closed, which a smaller size keeps",
+                     (long long)(report->domain_genus - report->genus), (long long)report->domain_genus);
   if (report->lost_count == 0 || used < 0 || (size_t)used >= capacity) return;
-  const laves_thin_place *p = &report->lost[first < report->lost_count ? first : 0];
+  const laves_thin_place *p = telling_place(report, first);
   const bool chord = isfinite(p->thickness);
   used += snprintf(text + used, capacity - (size_t)used, "; something is lost at (%.6g, %.6g, %.6g)", p->place[0], p->place[1],
                    p->place[2]);

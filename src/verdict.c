@@ -104,8 +104,8 @@ laves_result laves__judge(laves__run *r, const laves_mesh *mesh) {
       &r->layer);
   const size_t broken = r->guarantee ? laves__count_broken(r->guarantee, &r->layer, r->forced) : 0;
   report->peak_bytes = laves_context_peak_bytes(r->context);
-  laves_result known = laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : judge_features(r);
-  if (known == LAVES_OK) known = judge_thin(r, mesh);
+  laves_result known = laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : judge_thin(r, mesh);
+  if (known == LAVES_OK) known = judge_features(r);
   if (known != LAVES_OK) return known;
   if (report->off_surface)
     laves__warn(r, "%zu boundary vertices stand off the surface, where it is too sharp or thin for the size%s",
