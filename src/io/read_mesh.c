@@ -48,6 +48,29 @@ static read_fn *find_reader(const laves__mesh_input *input) {
   return NULL;
 }
 
+/* What a file is that no reader takes, by its first bytes or its name. */
+static laves_result fail_unknown(const laves__mesh_input *input, laves_error *error) {
+  static const struct {
+    const char *begin;
+    size_t length;
+    const char *what;
+  } kinds[] = {{"\211HDF", 4, "HDF5, as VTKHDF and XDMF are"},
+               {"CDF", 3, "NetCDF, as Exodus is"},
+               {"PK\003\004", 4, "a zip archive, as NPZ is"}};
+  static const char *const surfaces[] = {".stl", ".obj", ".ply", ".off"};
+  const size_t length = (size_t)(input->end - input->begin);
+  const char *dot = strrchr(input->name, '.');
+  for (size_t i = 0; i < LAVES__COUNT_OF(kinds); i++)
+    if (length >= kinds[i].length && memcmp(input->begin, kinds[i].begin, kinds[i].length) == 0)
+      return laves__mesh_input_fail(input, error, "it is %s, which is only written; keep a VTU beside it to read", kinds[i].what);
+  for (size_t i = 0; dot && i < LAVES__COUNT_OF(surfaces); i++)
+    if (strcasecmp(dot, surfaces[i]) == 0)
+      return laves__mesh_input_fail(input, error, "it is a surface by its name, not a tetrahedral mesh: `laves mesh` fills it");
+  return laves__mesh_input_fail(
+      input, error,
+      "it is not a tetrahedral mesh of a format that is known (VTU, legacy VTK, Gmsh, Medit, Abaqus; TetGen by .node or .ele)");
+}
+
 typedef laves_result load_fn(laves_context *context, const char *path, char **bytes, size_t *length, laves_error *error);
 
 /* Loads a file into the input's begin and end; free with close_file(). */
@@ -98,12 +121,7 @@ static laves_result read_one(laves__mesh_input *input, const char *path, laves_e
   laves_result result = open_file(input, path, laves__input_read, error);
   if (result != LAVES_OK) return result;
   read_fn *read = find_reader(input);
-  if (read)
-    result = read(input, error);
-  else
-    result = laves__mesh_input_fail(
-        input, error,
-        "it is not a tetrahedral mesh of a format that is known (VTU, legacy VTK, Gmsh, Medit, Abaqus; TetGen by .node or .ele)");
+  result = read ? read(input, error) : fail_unknown(input, error);
   close_file(input);
   return result;
 }

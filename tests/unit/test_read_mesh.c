@@ -326,6 +326,10 @@ static void assert_refused(fixture *f, const char *name, const char *text, const
 static void test_refused(void **state) {
   fixture *f = *state;
   assert_refused(f, "empty", "", "not a tetrahedral mesh of a format that is known");
+  assert_refused(f, "a.vtkhdf", "\211HDF\r\n", "HDF5, as VTKHDF and XDMF are");
+  assert_refused(f, "a.exo", "CDF\005", "NetCDF, as Exodus is");
+  assert_refused(f, "a.npz", "PK\003\004", "a zip archive, as NPZ is");
+  assert_refused(f, "a.stl", "solid a\n", "a surface by its name");
   assert_refused(f, "a.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices\n1\n0 0 0 0\nEnd\n", "no tetrahedra");
   assert_refused(f, "a.mesh", "MeshVersionFormatted 2\nDimension 2\n", "line 2: the dimension is 2");
   assert_refused(f, "a.mesh", "MeshVersionFormatted 2\nVertices\n99999\n0 0 0 0\n", "count that the file has room for");
