@@ -15,9 +15,10 @@
 
 #include "fault/jobs.h"
 #include "fault/refuser.h"
+#include "fixtures/stride.h"
 
-/* Refusals of each kind in the quick run of a job. */
-enum { QUICK_RUNS = 15 };
+/* Refusals of each kind in the quick run of a job; the few are for slow tools. */
+enum { QUICK_RUNS = 15, FEW_RUNS = 5 };
 
 static job_place place;
 
@@ -92,7 +93,8 @@ static int examine(const job *j) {
     return 1;
   }
   if (fault_of(&whole, &whole)) print_error("%s: %s with enough memory\n", j->name, fault_of(&whole, &whole));
-  const size_t stride = getenv("LAVES_EVERY") ? 1 : 1 + whole.asked / QUICK_RUNS;
+  const size_t runs = test_stride() > 1 ? FEW_RUNS : QUICK_RUNS;
+  const size_t stride = getenv("LAVES_EVERY") ? 1 : 1 + whole.asked / runs;
   const int wrong = refuse_each(j, &whole, false, stride) + refuse_each(j, &whole, true, stride);
   print_message("%s: %zu allocations, each %zu%s: %d wrong\n", j->name, whole.asked, stride, stride == 1 ? "" : "-th", wrong);
   return wrong + (fault_of(&whole, &whole) != NULL);

@@ -10,6 +10,7 @@
 
 #include "fixtures/meshes.h"
 #include "fixtures/spoilt.h"
+#include "fixtures/stride.h"
 #include "fixtures/tagged_cube.h"
 
 enum { SEEDS = 3, TAG_MAX = 20 };
@@ -111,7 +112,7 @@ static void check_promises(const laves_mesh *mesh, const laves_improve_options *
 
 static void check_kind(laves_mesh *made(laves_context *context, uint64_t seed)) {
   laves_context *context = laves_context_create(NULL);
-  for (uint64_t seed = 1; seed <= SEEDS; seed++) {
+  for (uint64_t seed = 1; seed <= SEEDS; seed += (uint64_t)test_stride()) {
     laves_mesh *mesh = made(context, seed);
     laves_improve_options options = laves_improve_options_default();
     print_message("seed %llu\n", (unsigned long long)seed);
@@ -204,7 +205,7 @@ static void test_motley_cube(void **state) {
 static void test_touching(void **state) {
   (void)state;
   laves_context *context = laves_context_create(NULL), *other;
-  for (uint64_t seed = 1; seed <= SEEDS; seed++) {
+  for (uint64_t seed = 1; seed <= SEEDS; seed += (uint64_t)test_stride()) {
     laves_mesh *mesh = touching(context, seed), *out;
     char hash[33];
     const laves_improve_options options = laves_improve_options_default();
