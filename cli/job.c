@@ -30,6 +30,11 @@ typedef struct job_reader {
 
 /* ---- words ---- */
 
+/* gcc 12 takes blocks that are kept in members of what it is handed for lost; job_free() frees them. */
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wanalyzer-malloc-leak"
+#endif
 static bool grow(job *said) {
   const int capacity = said->capacity ? 2 * said->capacity : 32;
   char **words = realloc(said->words, (size_t)capacity * sizeof *words);
@@ -61,6 +66,9 @@ static bool add_word(job *said, int line, const char *format, ...) {
   said->used[said->count++] = false;
   return true;
 }
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 
 void job_free(job *said) {
   if (!said) return;

@@ -37,7 +37,7 @@ static void sampled_shares(sampling *s, int count, const laves__box3 *boxes, dou
   laves__vec3 points[8 * LEAF_SAMPLES];
   double phi[8 * LEAF_SAMPLES];
   for (int i = 0; i < count * LEAF_SAMPLES; i++) points[i] = r3_point(&boxes[i / LEAF_SAMPLES], s->next++);
-  oracle->evaluate(oracle->self, (size_t)(count * LEAF_SAMPLES), points, phi, NULL);
+  oracle->evaluate(oracle->self, (size_t)count * LEAF_SAMPLES, points, phi, NULL);
   for (int k = 0; k < count; k++) {
     int inside = 0;
     for (int i = 0; i < LEAF_SAMPLES; i++) inside += phi[k * LEAF_SAMPLES + i] < 0;

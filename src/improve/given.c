@@ -446,7 +446,7 @@ static void number_vertices(const laves__given *given, const laves__layer *layer
     *out = v3_mad(given->centre, p, given->size);
     if (layer->origin[v] != LAVES__NO_ORIGIN) {
       const laves__vec3 before = layer_position(given, layer->origin[v]);
-      if (memcmp(&before, &p, sizeof p) == 0) *out = given->mesh->points[layer->origin[v]];
+      if (before.x == p.x && before.y == p.y && before.z == p.z) *out = given->mesh->points[layer->origin[v]];
     }
     a->number[v] = (int32_t)a->vertex_count++;
   }

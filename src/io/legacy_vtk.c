@@ -213,7 +213,7 @@ laves_result laves__legacy_begin_cell(const laves__legacy *r, laves__legacy_cell
 laves_result laves__legacy_skip_field(laves__legacy *r, laves_error *error) {
   laves__word name;
   size_t arrays, components, tuples;
-  laves__legacy_kind kind;
+  laves__legacy_kind kind = LAVES__LEGACY_INT8;
   if (!laves__scan_word(&r->scan, &name)) return laves__scan_fail_expected(&r->scan, error, "the name of a field");
   laves_result result = laves__legacy_read_count(r, &arrays, error);
   for (size_t i = 0; i < arrays && result == LAVES_OK; i++) {

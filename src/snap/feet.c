@@ -74,6 +74,7 @@ typedef struct question {
 /* The feet of the sites: the nearest points of the surface or, where one can't be found, the nearest crossing of the site's own
  * edges. */
 static void find_asked_feet(const laves__frame *frame, const laves__lattice *lattice, question *q, laves__feet *feet) {
+  for (size_t i = 0; i < q->count; i++) q->answer[i].found = false;
   laves__frame_project_many(frame, q->count, q->at, q->furthest, q->answer);
   for (size_t i = 0; i < q->count; i++) {
     const laves__projection *a = &q->answer[i];
@@ -156,6 +157,7 @@ static void find_feet(void *user, size_t begin, size_t end, int worker) {
   const size_t wished = s->frame->oracle->batch, most = wished < ASKED_MAX ? wished : ASKED_MAX;
   question q;
   q.count = 0;
+  q.furthest = 0;
   for (size_t i = begin; i < end; i++) {
     uint32_t unknown = 0;
     for (uint32_t mask = s->wanted[i]; mask; mask &= mask - 1)

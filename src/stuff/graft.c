@@ -44,7 +44,8 @@ void laves__known_forget(laves__known_lattice *known, size_t record) {
 static bool has_changed(const laves__known_lattice *known, const laves__record *r, size_t i) {
   if (i < known->count) {
     const laves__known_record *k = &known->record[i];
-    return k->zone != r->zone || memcmp(k->label, r->label, sizeof r->label) || memcmp(k->solid, r->solid, sizeof r->solid);
+    return k->zone != r->zone || memcmp(k->label, r->label, sizeof r->label) != 0 ||
+           memcmp(k->solid, r->solid, sizeof r->solid) != 0;
   }
   for (int site = 0; site < LAVES__C15_SITES; site++)
     if (r->label[site] != LAVES__LABEL_IN) return true;
