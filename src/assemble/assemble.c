@@ -6,44 +6,71 @@
 #include "assemble/stamp.h"
 #include "assemble/streamed.h"
 
+/* ---- counts and volume, brick by brick and tet by tet ---- */
+
+static double count_vertices(const void *user, size_t begin, size_t end) {
+  const laves__lattice *lattice = user;
+  double count = 0;
+  for (size_t slot = begin; slot < end; slot++)
+    for (int inside = 0; lattice->directory[slot] != LAVES__OUT && inside < LAVES__BRICK_CELLS; inside++) {
+      const int32_t cell = laves__brick_cell(lattice, slot, inside);
+      if (cell == LAVES__IN) count += LAVES__C15_SITES;
+      for (int site = 0; cell >= 0 && site < LAVES__C15_SITES; site++) {
+        const laves__record *r = &lattice->record[cell];
+        count += r->depth[site] <= LAVES__DEPTH_MAX || r->label[site] == LAVES__LABEL_IN;
+      }
+    }
+  return count;
+}
+
+static double count_tiles(const void *user, size_t begin, size_t end) {
+  const laves__lattice *lattice = user;
+  double count = 0;
+  for (size_t slot = begin; slot < end; slot++)
+    for (int inside = 0; lattice->directory[slot] != LAVES__OUT && inside < LAVES__BRICK_CELLS; inside++) {
+      const int32_t cell = laves__brick_cell(lattice, slot, inside);
+      if (cell == LAVES__IN) count += LAVES__C15_TETS;
+      if (cell >= 0) count += laves__stamped_count(&lattice->record[cell]);
+    }
+  return count;
+}
+
+static double count_living(const void *user, size_t begin, size_t end) {
+  const laves__layer *layer = user;
+  double count = 0;
+  for (size_t t = begin; t < end; t++) count += layer->tet[t][0] >= 0;
+  return count;
+}
+
+static double sum_volumes(const void *user, size_t begin, size_t end) {
+  const laves__layer *layer = user;
+  double volume = 0;
+  for (size_t t = begin; t < end; t++) {
+    if (layer->tet[t][0] < 0) continue;
+    laves__vec3 p[4];
+    laves__layer_points(layer, (int32_t)t, p);
+    volume += v3_det(p[0], p[1], p[2], p[3]) / 6;
+  }
+  return volume;
+}
+
 void laves__assemble_estimate(const laves__lattice *lattice, const laves__layer *layer, int64_t *vertices, int64_t *tets) {
+  laves_context *context = lattice->context;
   if (lattice->graph) {
     laves__assemble_graph_estimate(lattice, layer, vertices, tets);
     return;
   }
-  *vertices = *tets = 0;
-  for (size_t slot = 0; slot < lattice->directory_count; slot++)
-    for (int inside = 0; inside < LAVES__BRICK_CELLS; inside++) {
-      const int32_t cell = laves__brick_cell(lattice, slot, inside);
-      if (cell == LAVES__OUT) continue;
-      if (cell == LAVES__IN) {
-        *vertices += LAVES__C15_SITES;
-        *tets += LAVES__C15_TETS;
-        continue;
-      }
-      const laves__record *r = &lattice->record[cell];
-      for (int site = 0; site < LAVES__C15_SITES; site++)
-        *vertices += r->depth[site] <= LAVES__DEPTH_MAX || r->label[site] == LAVES__LABEL_IN;
-      *tets += laves__stamped_count(r);
-    }
-  for (size_t t = 0; t < layer->tet_count; t++) *tets += layer->tet[t][0] >= 0;
+  *vertices = (int64_t)laves__parallel_sum(context, NULL, lattice->directory_count, count_vertices, lattice);
+  *tets = (int64_t)laves__parallel_sum(context, NULL, lattice->directory_count, count_tiles, lattice) +
+          (int64_t)laves__parallel_sum(context, NULL, layer->tet_count, count_living, layer);
 }
-
-static double volume_of(const laves__vec3 p[4]) { return v3_det(p[0], p[1], p[2], p[3]) / 6; }
 
 double laves__assemble_volume(const laves__lattice *lattice, const laves__layer *layer) {
   static const double tile = LAVES__CELL_SIDE * LAVES__CELL_SIDE * LAVES__CELL_SIDE / LAVES__C15_TETS; /* mean volume */
-  double volume = 0;
-  int64_t vertices, tiles;
-  laves__assemble_estimate(lattice, layer, &vertices, &tiles);
-  for (size_t t = 0; t < layer->tet_count; t++) {
-    if (layer->tet[t][0] < 0) continue;
-    laves__vec3 p[4];
-    laves__layer_points(layer, (int32_t)t, p);
-    volume += volume_of(p);
-    tiles--;
-  }
-  return (lattice->graph ? laves__assemble_graph_volume(lattice->graph) : (double)tiles * tile) + volume;
+  laves_context *context = lattice->context;
+  const double whole = lattice->graph ? laves__assemble_graph_volume(lattice->graph)
+                                      : tile * laves__parallel_sum(context, NULL, lattice->directory_count, count_tiles, lattice);
+  return whole + laves__parallel_sum(context, NULL, layer->tet_count, sum_volumes, layer);
 }
 
 /* ---- the mesh in memory ---- */

@@ -158,3 +158,33 @@ bool laves__parallel_for(laves_context *context, const char *phase, size_t count
   if (workers > 0) run(&l, workers);
   return !laves__is_cancelled(context);
 }
+
+/* ---- sums ---- */
+
+enum { PIECES = 1024, PIECE_MIN = 32 };
+
+typedef struct summation {
+  laves__sum_fn *fn;
+  const void *user;
+  size_t count, piece; /* items in all, and of a piece */
+  double sum[PIECES];
+} summation;
+
+static void sum_pieces(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  summation *s = user;
+  for (size_t i = begin; i < end; i++) {
+    const size_t first = i * s->piece, rest = s->count - first;
+    s->sum[i] = s->fn(s->user, first, first + (rest < s->piece ? rest : s->piece));
+  }
+}
+
+double laves__parallel_sum(laves_context *context, const char *phase, size_t count, laves__sum_fn *fn, const void *user) {
+  summation s = {.fn = fn, .user = user, .count = count, .piece = (count + PIECES - 1) / PIECES};
+  if (s.piece < PIECE_MIN) s.piece = PIECE_MIN;
+  const size_t pieces = (count + s.piece - 1) / s.piece;
+  laves__parallel_for(context, phase, pieces, 1, sum_pieces, &s);
+  double sum = 0;
+  for (size_t i = 0; i < pieces; i++) sum += s.sum[i];
+  return sum;
+}

@@ -316,6 +316,12 @@ static void look_around(const laves__lattice *l, const int32_t first[3], neighbo
         n->cell[z][y][x] = laves__lattice_cell(l, first[0] + x - RIM, first[1] + y - RIM, first[2] + z - RIM);
 }
 
+static void place_in_brick(int inside, int at[3]) {
+  at[0] = inside % LAVES__BRICK_SIDE;
+  at[1] = inside / LAVES__BRICK_SIDE % LAVES__BRICK_SIDE;
+  at[2] = inside / (LAVES__BRICK_SIDE * LAVES__BRICK_SIDE);
+}
+
 /* Whether a cell of the brick is inside and touches one outside. */
 static bool is_unsealed(const neighbourhood *n, const int at[3]) {
   if (n->cell[at[2] + RIM][at[1] + RIM][at[0] + RIM] != LAVES__IN) return false;
@@ -329,8 +335,8 @@ static bool seal_brick(laves__lattice *l, const int32_t first[3]) {
   neighbourhood n;
   look_around(l, first, &n);
   for (int inside = 0; inside < LAVES__BRICK_CELLS; inside++) {
-    const int at[3] = {inside % LAVES__BRICK_SIDE, inside / LAVES__BRICK_SIDE % LAVES__BRICK_SIDE,
-                       inside / (LAVES__BRICK_SIDE * LAVES__BRICK_SIDE)};
+    int at[3];
+    place_in_brick(inside, at);
     if (!is_unsealed(&n, at)) continue;
     if (!seal_cell(l, first[0] + at[0], first[1] + at[1], first[2] + at[2])) return false;
     look_around(l, first, &n);
@@ -338,33 +344,61 @@ static bool seal_brick(laves__lattice *l, const int32_t first[3]) {
   return true;
 }
 
-/* Inside cells never touch outside cells when the oracle's answers about boxes agree with one another; where they do not,
- * both are looked at site by site. */
+/* The first cell of a brick on the border of the solid; false for one that is whole. */
+static bool find_border_brick(const laves__lattice *l, size_t slot, int32_t first[3]) {
+  size_t rest = slot;
+  int32_t b[3];
+  for (int axis = 0; axis < 3; axis++) {
+    b[axis] = (int32_t)(rest % (size_t)l->bricks[axis]);
+    rest /= (size_t)l->bricks[axis];
+    first[axis] = l->lower[axis] + b[axis] * LAVES__BRICK_SIDE;
+  }
+  return l->directory[slot] != LAVES__OUT && !is_deep_brick(l, b);
+}
+
+static double count_unsealed(const void *user, size_t begin, size_t end) {
+  const laves__lattice *l = user;
+  double count = 0;
+  for (size_t slot = begin; slot < end; slot++) {
+    int32_t first[3];
+    neighbourhood n;
+    if (!find_border_brick(l, slot, first)) continue;
+    look_around(l, first, &n);
+    for (int inside = 0; inside < LAVES__BRICK_CELLS; inside++) {
+      int at[3];
+      place_in_brick(inside, at);
+      count += is_unsealed(&n, at);
+    }
+  }
+  return count;
+}
+
+/* Inside cells never touch outside cells when the oracle's answers about boxes agree with one another, which all threads look
+ * for; where they do not, both are looked at site by site. */
 static bool seal_cells(laves__lattice *l) {
-  for (int32_t bz = 0; bz < l->bricks[2]; bz++)
-    for (int32_t by = 0; by < l->bricks[1]; by++)
-      for (int32_t bx = 0; bx < l->bricks[0]; bx++) {
-        const int32_t b[3] = {bx, by, bz};
-        if (l->directory[slot_of(l, b)] == LAVES__OUT || is_deep_brick(l, b)) continue;
-        const int32_t first[3] = {l->lower[0] + bx * LAVES__BRICK_SIDE, l->lower[1] + by * LAVES__BRICK_SIDE,
-                                  l->lower[2] + bz * LAVES__BRICK_SIDE};
-        if (!seal_brick(l, first)) return false;
-      }
+  if (laves__parallel_sum(l->context, NULL, l->directory_count, count_unsealed, l) == 0) return true;
+  for (size_t slot = 0; slot < l->directory_count; slot++) {
+    int32_t first[3];
+    if (find_border_brick(l, slot, first) && !seal_brick(l, first)) return false;
+  }
   return true;
 }
 
-/* Likewise, no tet around a site may belong to a cell without a record that lies on the other side. */
+/* Likewise, no tet around a site may belong to a cell without a record that lies on the other side. What `around` has may have
+ * got a record since. */
 static bool seal_owners(laves__lattice *l, size_t index) {
   const int32_t at[3] = {l->record[index].xyz[0], l->record[index].xyz[1], l->record[index].xyz[2]};
-  for (int site = 0; site < LAVES__C15_SITES; site++)
+  for (int site = 0; site < LAVES__C15_SITES; site++) {
+    const int32_t beyond = l->record[index].sign[site] < 0 ? LAVES__OUT : LAVES__IN;
     for (int k = 0; k < laves__c15_star_size[site]; k++) {
       const int cell = laves__c15_star[site][k].cell;
+      if (l->record[index].around[cell] != beyond) continue;
       const int32_t n[3] = {at[0] + cell % 3 - 1, at[1] + cell / 3 % 3 - 1, at[2] + cell / 9 - 1};
-      const int32_t beyond = l->record[index].sign[site] < 0 ? LAVES__OUT : LAVES__IN;
       if (laves__lattice_cell(l, n[0], n[1], n[2]) == beyond && is_in_directory(l, n) &&
           laves__lattice_add_record(l, n[0], n[1], n[2]) < 0)
         return false;
     }
+  }
   return true;
 }
 

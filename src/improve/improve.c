@@ -114,11 +114,17 @@ static int32_t tet_at(const work *w, size_t i) { return w->fresh ? w->fresh[i] :
 
 static size_t count_bad(const work *w) { return laves__count_bad(w->layer, &w->admission); }
 
+/* Bad tets that span a wall. */
+static double count_thin(const void *user, size_t begin, size_t end) {
+  const work *w = user;
+  double count = 0;
+  for (size_t i = begin; i < end; i++) count += is_bad(w, tet_at(w, i)) && laves__spans_wall(w->layer, tet_at(w, i));
+  return count;
+}
+
 /* Whether walls a tet thick are more than a place or two: contraction is dear, and there it seldom reaches the asked window. */
 static bool has_thin_walls(const work *w) {
-  size_t count = 0;
-  for (size_t i = 0; i < count_tets(w); i++) count += is_bad(w, tet_at(w, i)) && laves__spans_wall(w->layer, tet_at(w, i));
-  return count > wall_count;
+  return laves__parallel_sum(w->layer->context, NULL, count_tets(w), count_thin, w) > (double)wall_count;
 }
 
 /* A number that changes when any tet around a tet does. */
@@ -289,14 +295,21 @@ static size_t count_off(const work *w) {
   return count;
 }
 
+static bool is_flat(const work *w, int32_t t) { return w->layer->tet[t][0] >= 0 && w->layer->quality[t] < peel_below; }
+
+static double count_flat(const void *user, size_t begin, size_t end) {
+  const work *w = user;
+  double count = 0;
+  for (size_t i = begin; i < end; i++) count += is_flat(w, tet_at(w, i));
+  return count;
+}
+
 /* Takes away the flat tets of thin walls, until none of them can be. */
 static void peel_all(work *w) {
-  for (bool again = true; again;) {
+  for (bool again = laves__parallel_sum(w->layer->context, NULL, count_tets(w), count_flat, w) > 0; again;) {
     again = false;
-    for (size_t i = 0; i < count_tets(w); i++) {
-      const int32_t t = tet_at(w, i);
-      if (w->layer->tet[t][0] >= 0 && w->layer->quality[t] < peel_below && laves__peel_tet(w->frame, w->layer, t)) again = true;
-    }
+    for (size_t i = 0; i < count_tets(w); i++)
+      if (is_flat(w, tet_at(w, i)) && laves__peel_tet(w->frame, w->layer, tet_at(w, i))) again = true;
   }
 }
 
@@ -574,16 +587,24 @@ cleanup:
   return result;
 }
 
-size_t laves__improve_outside(const laves__window *window, const laves__layer *layer) {
-  enum { PIECE = 1024 };
-  const laves__measure m = laves__measure_of(window);
-  double quality[PIECE];
-  size_t count = 0;
-  for (size_t t = 0; t < layer->tet_count; t += PIECE) {
-    if (laves__cancelled(layer->context, "improve", (double)t / (double)layer->tet_count)) break;
-    const size_t end = t + PIECE < layer->tet_count ? t + PIECE : layer->tet_count;
-    laves__measure_tets(&m, layer, t, end, quality);
-    for (size_t i = t; i < end; i++) count += layer->tet[i][0] >= 0 && quality[i - t] < 1;
+typedef struct outside_count {
+  laves__measure measure;
+  const laves__layer *layer;
+} outside_count;
+
+static double count_outside(const void *user, size_t begin, size_t end) {
+  enum { PART = 256 };
+  const outside_count *c = user;
+  double quality[PART], count = 0;
+  for (size_t first = begin; first < end; first += PART) {
+    const size_t last = end - first < PART ? end : first + PART;
+    laves__measure_tets(&c->measure, c->layer, first, last, quality);
+    for (size_t t = first; t < last; t++) count += c->layer->tet[t][0] >= 0 && quality[t - first] < 1;
   }
   return count;
+}
+
+size_t laves__improve_outside(const laves__window *window, const laves__layer *layer) {
+  const outside_count c = {laves__measure_of(window), layer};
+  return (size_t)laves__parallel_sum(layer->context, "improve", layer->tet_count, count_outside, &c);
 }

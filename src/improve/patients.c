@@ -155,21 +155,16 @@ void laves__patients_free(laves_context *context, laves__patients *p) {
 typedef struct tally {
   const laves__layer *layer;
   const laves__admission *admission;
-  atomic_size_t count;
 } tally;
 
-static void count_some(void *user, size_t begin, size_t end, int worker) {
-  (void)worker;
-  tally *sum = user;
-  size_t count = 0;
-  for (size_t i = begin; i < end; i++) count += laves__is_bad(sum->layer, sum->admission, tet_at(sum->admission, i));
-  atomic_fetch_add(&sum->count, count);
+static double count_some(const void *user, size_t begin, size_t end) {
+  const tally *of = user;
+  double count = 0;
+  for (size_t i = begin; i < end; i++) count += laves__is_bad(of->layer, of->admission, tet_at(of->admission, i));
+  return count;
 }
 
 size_t laves__count_bad(const laves__layer *layer, const laves__admission *admission) {
-  tally sum = {.layer = layer, .admission = admission};
-  atomic_init(&sum.count, 0);
-  laves__parallel_for(layer->context, NULL, count_tets(layer, admission), CHUNK, count_some,
-                      &sum); /* after a cancel nobody asks */
-  return atomic_load(&sum.count);
+  const tally of = {layer, admission};
+  return (size_t)laves__parallel_sum(layer->context, NULL, count_tets(layer, admission), count_some, &of);
 }

@@ -132,10 +132,23 @@ static bool is_worse(const laves__layer *layer, int32_t t, double worst) {
   return laves__orient3d(p[0], p[1], p[2], p[3]) <= 0;
 }
 
+typedef struct worse {
+  const laves__layer *layer;
+  double worst;
+} worse;
+
+static double count_worse(const void *user, size_t begin, size_t end) {
+  const worse *w = user;
+  double count = 0;
+  for (size_t t = begin; t < end; t++) count += w->layer->tet[t][0] >= 0 && is_worse(w->layer, (int32_t)t, w->worst);
+  return count;
+}
+
 /* Sends the vertices of tets that became worse than `worst` back, until none is; each goes back at most once. */
 static void take_back(sweep *s, double worst) {
   laves__layer *layer = s->layer;
-  for (bool again = true; again;) {
+  const worse of = {layer, worst};
+  for (bool again = laves__parallel_sum(layer->context, NULL, layer->tet_count, count_worse, &of) > 0; again;) {
     again = false;
     for (size_t t = 0; t < layer->tet_count; t++) {
       if (layer->tet[t][0] < 0 || !is_worse(layer, (int32_t)t, worst)) continue;

@@ -44,16 +44,28 @@ static size_t release_tet(laves__layer *layer, size_t t, laves__release what) {
   return count;
 }
 
+static size_t release_at(laves__layer *layer, size_t t, laves__release what) {
+  size_t count = release_tet(layer, t, what);
+  for (int k = 0; k < 4 && what == LAVES__RELEASE_AROUND; k++) {
+    const laves__star *star = &layer->star[layer->tet[t][k]];
+    for (int i = 0; i < star->count; i++) count += release_tet(layer, (size_t)star->tet[i], what);
+  }
+  return count;
+}
+
+/* One after the other, as what is let go of changes which angles are fixed. Few are outside: many are measured at once as if none
+ * was fixed, which makes none look better, and only those that are outside then are measured again. */
 size_t laves__release_features(const laves__frame *frame, const laves__window *window, laves__release what, laves__layer *layer) {
-  const laves__measure m = measure_for(frame, window, layer);
+  enum { PART = 256 };
+  const laves__measure m = measure_for(frame, window, layer), plain = laves__measure_of(window);
   size_t count = 0;
-  for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(layer->context, "improve", t, layer->tet_count); t++) {
-    if (!is_outside(&m, layer, t)) continue;
-    count += release_tet(layer, t, what);
-    for (int k = 0; k < 4 && what == LAVES__RELEASE_AROUND; k++) {
-      const laves__star *star = &layer->star[layer->tet[t][k]];
-      for (int i = 0; i < star->count; i++) count += release_tet(layer, (size_t)star->tet[i], what);
-    }
+  for (size_t first = 0; first < layer->tet_count; first += PART) {
+    double quality[PART];
+    const size_t last = layer->tet_count - first < PART ? layer->tet_count : first + PART;
+    if (laves__cancelled(layer->context, "improve", (double)first / (double)layer->tet_count)) break;
+    laves__measure_tets(&plain, layer, first, last, quality);
+    for (size_t t = first; t < last; t++)
+      if (layer->tet[t][0] >= 0 && quality[t - first] < 1 && is_outside(&m, layer, t)) count += release_at(layer, t, what);
   }
   return count;
 }

@@ -11,6 +11,9 @@
  * three longest edges are 3.27, two cells 5.02. */
 enum { ACTIVE_REACH = 2 };
 
+/* Records or chunks that a thread takes at least. */
+enum { BLOCK = 16 };
+
 static bool has_surface_site(const laves__record *r) {
   if (r->zone) return true; /* cuts may be here */
   for (int site = 0; site < LAVES__C15_SITES; site++)
@@ -34,68 +37,6 @@ static bool widen_records(laves__lattice *lattice) {
   }
   laves__lattice_link(lattice);
   return true;
-}
-
-typedef struct site_queue {
-  laves_context *context;
-  uint32_t *id;
-  size_t count, capacity;
-} site_queue;
-
-/* Gives a site a depth and a place in the queue; false when memory is short. */
-static bool reach(laves__lattice *lattice, site_queue *queue, uint32_t id, int depth) {
-  lattice->record[id / LAVES__C15_SITES].depth[id % LAVES__C15_SITES] = (uint8_t)depth;
-  if (!laves__grow(queue->context, &queue->id, &queue->capacity, queue->count + 1, sizeof *queue->id)) return false;
-  queue->id[queue->count++] = id;
-  return true;
-}
-
-/* The first sites of the search that have the given depth, 0 or 1. Depth 0: ON sites that bound kept tets or pieces. Depth 1:
- * ON sites whose star is whole, and inner corners of pieces. False when memory is short or it is cancelled. */
-static bool reach_first(laves__lattice *lattice, const laves__cuts *cuts, int depth, site_queue *queue) {
-  for (size_t i = 0; i < lattice->record_count; i++) {
-    if (laves__cancelled_at(lattice->context, "snap", i, lattice->record_count)) return false;
-    for (int site = 0; site < LAVES__C15_SITES; site++) {
-      if (lattice->record[i].label[site] != LAVES__LABEL_ON) continue;
-      const laves__site s = {(int32_t)i, (uint8_t)site};
-      const uint64_t kept = laves__star_kept(lattice, (int32_t)i, site);
-      const bool whole = kept == laves__whole_star(lattice, s);
-      if (kept && whole == (depth == 1) && !reach(lattice, queue, laves__site_id(s), depth)) return false;
-    }
-  }
-  for (size_t t = 0; cuts && t < cuts->tet_count; t++)
-    for (int k = 0; k < 4; k++) {
-      const uint32_t id = cuts->tet[t][k];
-      if (id & LAVES__CUT_VERTEX) continue;
-      const laves__record *r = &lattice->record[id / LAVES__C15_SITES];
-      const int site = (int)(id % LAVES__C15_SITES);
-      if ((r->label[site] == LAVES__LABEL_ON) == (depth == 0) && r->depth[site] > depth && !reach(lattice, queue, id, depth))
-        return false;
-    }
-  return true;
-}
-
-/* Breadth first from the boundary, through IN sites. */
-static bool measure_depths(laves__lattice *lattice, const laves__cuts *cuts, size_t *vertex_count) {
-  site_queue queue = {.context = lattice->context};
-  bool memory = reach_first(lattice, cuts, 0, &queue) && reach_first(lattice, cuts, 1, &queue);
-  for (size_t head = 0; memory && head < queue.count; head++) {
-    memory = !laves__cancelled_at(lattice->context, "snap", head, queue.count);
-    const laves__site at = laves__site_of(queue.id[head]);
-    const int depth = lattice->record[at.cell].depth[at.site];
-    if (depth == LAVES__DEPTH_MAX) break;
-    const laves__ring ring = laves__ring_of(lattice, at);
-    for (int k = 0; memory && k < ring.count; k++) {
-      const laves__site s = laves__ring_at(&ring, k);
-      if (s.cell < 0) continue;
-      const laves__record *other = &lattice->record[s.cell];
-      if (other->label[s.site] != LAVES__LABEL_IN || other->depth[s.site] <= depth + 1) continue;
-      memory = reach(lattice, &queue, laves__site_id(s), depth + 1);
-    }
-  }
-  *vertex_count = queue.count;
-  laves__free(queue.context, queue.id, queue.capacity, sizeof *queue.id);
-  return memory;
 }
 
 /* Which tets of each cell are stamped and which belong to the layer. One byte for each site that the cell's tets can use
@@ -160,16 +101,7 @@ static void sort_tets(void *user, size_t begin, size_t end, int worker) {
 static bool sort_all_tets(laves__lattice *lattice) {
   if (lattice->graph)
     return laves__parallel_for(lattice->context, "snap", lattice->graph->tet_count, 1024, sort_graph_tets, lattice);
-  return laves__parallel_for(lattice->context, "snap", lattice->record_count, 16, sort_tets, lattice);
-}
-
-static size_t count_layer_tets(const laves__lattice *lattice) {
-  const laves__graph *g = lattice->graph;
-  size_t count = 0;
-  for (size_t t = 0; g && t < g->tet_count; t++) count += (g->flags[t] & LAVES__TET_LAYER) != 0;
-  for (size_t i = 0; !g && i < lattice->record_count; i++)
-    for (int word = 0; word < 3; word++) count += (size_t)__builtin_popcountll(lattice->record[i].layer[word]);
-  return count;
+  return laves__parallel_for(lattice->context, "snap", lattice->record_count, BLOCK, sort_tets, lattice);
 }
 
 static laves__parted_site *find_parted(const laves__parted *parted, uint32_t id) {
@@ -191,30 +123,80 @@ static void place_at(const laves__foot *foot, laves__layer *layer, size_t v) {
   layer->off_surface[v] = layer->depth[v] == 0 && foot->state == LAVES__FOOT_OFF;
 }
 
-/* Numbers the layer's vertices at sites by record and site, and returns how many they are. Sites with several fans get one vertex
- * for each, and a negative mark. */
-static size_t number_vertices(laves__lattice *lattice, laves__parted *parted, laves__layer *layer) {
-  size_t next = 0;
-  for (size_t i = 0; i < lattice->record_count; i++) {
-    laves__record *r = &lattice->record[i];
+/* ---- numbering: what each record or chunk holds is counted, summed up, and numbered, by all threads ---- */
+
+typedef struct numbering {
+  laves__lattice *lattice;
+  const laves__parted *parted;
+  laves__layer *layer;
+  size_t *vertex; /* [record_count + 1] how many vertices a record has; then its first */
+  size_t *tet;    /* [chunk_count + 1] the same of the layer's tets */
+} numbering;
+
+static laves__parted_site *fans_of(const numbering *n, laves__site s) {
+  const bool on_boundary = n->lattice->record[s.cell].depth[s.site] == 0;
+  return on_boundary && n->parted->count ? find_parted(n->parted, laves__site_id(s)) : NULL;
+}
+
+static void count_vertices(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const numbering *n = user;
+  for (size_t i = begin; i < end; i++) {
+    size_t count = 0;
+    for (int site = 0; site < LAVES__C15_SITES; site++) {
+      if (n->lattice->record[i].depth[site] > LAVES__DEPTH_MAX) continue;
+      const laves__parted_site *fans = fans_of(n, (laves__site){(int32_t)i, (uint8_t)site});
+      count += fans ? (size_t)fans->fan_count : 1;
+    }
+    n->vertex[i] = count;
+  }
+}
+
+static void count_tets(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const numbering *n = user;
+  for (size_t chunk = begin; chunk < end; chunk++) {
+    size_t count = 0;
+    for (int i = 0, size = laves__chunk_size(n->lattice, chunk); i < size; i++)
+      count += laves__tet_is(n->lattice, (laves__tet){(int32_t)chunk, (uint8_t)i}, LAVES__TET_LAYER);
+    n->tet[chunk] = count;
+  }
+}
+
+/* Counts become the sums of those before, the last the sum of all. */
+static void sum_up(size_t *first, size_t count) {
+  size_t sum = 0;
+  for (size_t i = 0; i <= count; i++) {
+    const size_t own = i < count ? first[i] : 0;
+    first[i] = sum;
+    sum += own;
+  }
+}
+
+/* The layer's vertices at sites, by record and site. Sites with several fans get one vertex for each, and a negative mark. */
+static void number_vertices(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const numbering *n = user;
+  laves__layer *layer = n->layer;
+  for (size_t i = begin; i < end; i++) {
+    laves__record *r = &n->lattice->record[i];
+    size_t next = n->vertex[i];
     for (int site = 0; site < LAVES__C15_SITES; site++) {
       if (r->depth[site] > LAVES__DEPTH_MAX) continue;
       const laves__site s = {(int32_t)i, (uint8_t)site};
-      const uint32_t id = laves__site_id(s);
-      laves__parted_site *fans = r->depth[site] == 0 && parted->count ? find_parted(parted, id) : NULL;
-      r->vertex[site] = fans ? -2 - (int32_t)(fans - parted->item) : (int32_t)next;
+      laves__parted_site *fans = fans_of(n, s);
+      r->vertex[site] = fans ? -2 - (int32_t)(fans - n->parted->item) : (int32_t)next;
       for (int fan = 0; fan < (fans ? fans->fan_count : 1); fan++) {
         layer->depth[next] = r->depth[site];
         layer->hint[next] = r->hint[site];
-        layer->origin[next] = fan == 0 ? id : LAVES__NO_ORIGIN;
-        layer->position[next] = laves__site_place(lattice, s);
-        if (layer->scale) layer->scale[next] = (float)laves__site_scale(lattice, s);
+        layer->origin[next] = fan == 0 ? laves__site_id(s) : LAVES__NO_ORIGIN;
+        layer->position[next] = laves__site_place(n->lattice, s);
+        if (layer->scale) layer->scale[next] = (float)laves__site_scale(n->lattice, s);
         if (fans) fans->vertex[fan] = (int32_t)next;
         next++;
       }
     }
   }
-  return next;
 }
 
 /* The vertex of a parted site that a tet uses: that of the fan which holds the tet. */
@@ -225,23 +207,24 @@ static int32_t parted_vertex(const laves__lattice *lattice, const laves__parted_
   return parted->vertex[fan];
 }
 
-/* The whole tets; returns how many. */
-static size_t number_tets(const laves__lattice *lattice, const laves__parted *parted, laves__layer *layer) {
-  size_t next = 0;
-  const size_t chunks = laves__chunk_count(lattice);
-  for (size_t chunk = 0; chunk < chunks; chunk++)
-    for (int i = 0, size = laves__chunk_size(lattice, chunk); i < size; i++) {
+/* The whole tets. */
+static void number_tets(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const numbering *n = user;
+  for (size_t chunk = begin; chunk < end; chunk++) {
+    size_t next = n->tet[chunk];
+    for (int i = 0, size = laves__chunk_size(n->lattice, chunk); i < size; i++) {
       const laves__tet tet = {(int32_t)chunk, (uint8_t)i};
-      if (!laves__tet_is(lattice, tet, LAVES__TET_LAYER)) continue;
+      if (!laves__tet_is(n->lattice, tet, LAVES__TET_LAYER)) continue;
       laves__site corner[4];
-      laves__corners_of(lattice, tet, corner);
+      laves__corners_of(n->lattice, tet, corner);
       for (int k = 0; k < 4; k++) {
-        const int32_t vertex = lattice->record[corner[k].cell].vertex[corner[k].site];
-        layer->tet[next][k] = vertex >= 0 ? vertex : parted_vertex(lattice, &parted->item[-2 - vertex], tet);
+        const int32_t vertex = n->lattice->record[corner[k].cell].vertex[corner[k].site];
+        n->layer->tet[next][k] = vertex >= 0 ? vertex : parted_vertex(n->lattice, &n->parted->item[-2 - vertex], tet);
       }
       next++;
     }
-  return next;
+  }
 }
 
 /* Cut vertices come after those at sites, pieces after the whole tets. */
@@ -263,16 +246,24 @@ static void add_cuts(const laves__lattice *lattice, const laves__cuts *cuts, siz
 }
 
 /* Vertices at ON sites go to their feet; those without one stay. */
-static void place_vertices(const laves__lattice *lattice, const laves__feet *feet, size_t count, laves__layer *layer) {
-  for (size_t v = 0; v < count; v++) {
-    const uint32_t id = layer->origin[v];
-    if (layer->depth[v] > 1 || id == LAVES__NO_ORIGIN) continue;
+typedef struct placing {
+  const laves__lattice *lattice;
+  const laves__feet *feet;
+  laves__layer *layer;
+} placing;
+
+static void place_vertices(void *user, size_t begin, size_t end, int worker) {
+  (void)worker;
+  const placing *p = user;
+  for (size_t v = begin; v < end; v++) {
+    const uint32_t id = p->layer->origin[v];
+    if (p->layer->depth[v] > 1 || id == LAVES__NO_ORIGIN) continue;
     const int32_t record = (int32_t)(id / LAVES__C15_SITES);
     const int site = (int)(id % LAVES__C15_SITES);
-    if (lattice->record[record].label[site] != LAVES__LABEL_ON) continue;
-    const laves__foot *foot = laves__feet_get(feet, record, site);
-    if (foot) place_at(foot, layer, v);
-    if (!foot && layer->depth[v] == 0) layer->off_surface[v] = true;
+    if (p->lattice->record[record].label[site] != LAVES__LABEL_ON) continue;
+    const laves__foot *foot = laves__feet_get(p->feet, record, site);
+    if (foot) place_at(foot, p->layer, v);
+    if (!foot && p->layer->depth[v] == 0) p->layer->off_surface[v] = true;
   }
 }
 
@@ -294,29 +285,51 @@ void laves__cuts_free(laves__cuts *cuts) {
   memset(cuts, 0, sizeof *cuts);
 }
 
+/* Makes the layer, with room for what is cut, and numbers what is whole. */
+static laves_result number_all(numbering *n, const laves__cuts *cuts, laves_error *error) {
+  laves__lattice *lattice = n->lattice;
+  laves_context *context = lattice->context;
+  const size_t records = lattice->record_count, chunks = laves__chunk_count(lattice);
+  if (!laves__parallel_for(context, NULL, records, BLOCK, count_vertices, n) ||
+      !laves__parallel_for(context, NULL, chunks, BLOCK, count_tets, n))
+    return laves__fail_cancelled(error);
+  sum_up(n->vertex, records);
+  sum_up(n->tet, chunks);
+  const size_t vertices = n->vertex[records] + (cuts ? cuts->vertex_count : 0);
+  const size_t tets = n->tet[chunks] + (cuts ? cuts->tet_count : 0);
+  if (tets > INT32_MAX)
+    return laves__fail(error, LAVES_ERROR_OPTION,
+                       "the boundary layer would have %zu tetrahedra, more than can be indexed; choose a larger size", tets);
+  const laves_result result = laves__layer_create(context, vertices, tets, n->layer, error);
+  if (result != LAVES_OK) return result;
+  if (lattice->graph && !(n->layer->scale = laves__alloc(context, vertices, sizeof *n->layer->scale)))
+    return laves__fail_memory(context, error);
+  return laves__parallel_for(context, NULL, records, BLOCK, number_vertices, n) &&
+                 laves__parallel_for(context, NULL, chunks, BLOCK, number_tets, n)
+             ? LAVES_OK
+             : laves__fail_cancelled(error);
+}
+
 laves_result laves__layer_build(const laves__feet *feet, laves__lattice *lattice, laves__parted *parted, const laves__cuts *cuts,
                                 laves__layer *layer, laves_error *error) {
   laves_context *context = lattice->context;
-  size_t vertex_count = 0;
-  if (!widen_records(lattice) || !measure_depths(lattice, cuts, &vertex_count)) return laves__fail_memory(context, error);
-  for (size_t i = 0; i < parted->count; i++) vertex_count += (size_t)parted->item[i].fan_count - 1;
-  if (!sort_all_tets(lattice)) return laves__fail_cancelled(error);
-  const size_t tet_count = count_layer_tets(lattice);
-  const size_t cut_vertices = cuts ? cuts->vertex_count : 0, pieces = cuts ? cuts->tet_count : 0;
-  if (tet_count + pieces > INT32_MAX)
-    return laves__fail(error, LAVES_ERROR_OPTION,
-                       "the boundary layer would have %zu tetrahedra, more than can be indexed; choose a larger size",
-                       tet_count + pieces);
-  laves_result result = laves__layer_create(context, vertex_count + cut_vertices, tet_count + pieces, layer, error);
-  if (result != LAVES_OK) return result;
-  if (lattice->graph && !(layer->scale = laves__alloc(context, layer->vertex_count, sizeof *layer->scale)))
-    return laves__fail_memory(context, error);
-  const size_t at_sites = number_vertices(lattice, parted, layer), whole = number_tets(lattice, parted, layer);
-  LAVES_ASSERT(at_sites == vertex_count && whole == tet_count);
-  place_vertices(lattice, feet, at_sites, layer);
-  place_copies(at_sites, layer);
-  if (cuts) add_cuts(lattice, cuts, at_sites, whole, layer);
-  return laves__layer_link(layer, error);
+  if (!widen_records(lattice)) return laves__fail_memory(context, error);
+  if (!laves__measure_depths(lattice, cuts) || !sort_all_tets(lattice)) return laves__fail_cancelled(error);
+  const size_t records = lattice->record_count, chunks = laves__chunk_count(lattice);
+  numbering n = {.lattice = lattice, .parted = parted, .layer = layer};
+  n.vertex = laves__alloc(context, records + 1, sizeof *n.vertex);
+  n.tet = laves__alloc(context, chunks + 1, sizeof *n.tet);
+  laves_result result = n.vertex && n.tet ? number_all(&n, cuts, error) : laves__fail_memory(context, error);
+  if (result == LAVES_OK) {
+    const size_t at_sites = n.vertex[records], whole = n.tet[chunks];
+    placing p = {lattice, feet, layer};
+    if (!laves__parallel_for(context, NULL, at_sites, 1024, place_vertices, &p)) result = laves__fail_cancelled(error);
+    place_copies(at_sites, layer);
+    if (cuts) add_cuts(lattice, cuts, at_sites, whole, layer);
+  }
+  laves__free(context, n.vertex, records + 1, sizeof *n.vertex);
+  laves__free(context, n.tet, chunks + 1, sizeof *n.tet);
+  return result == LAVES_OK ? laves__layer_link(layer, error) : result;
 }
 
 static bool is_positive(const laves__layer *layer, int32_t tet) {
@@ -325,23 +338,32 @@ static bool is_positive(const laves__layer *layer, int32_t tet) {
   return laves__orient3d(p[0], p[1], p[2], p[3]) > 0;
 }
 
-size_t laves__layer_untangle(laves__layer *layer, const laves__vec3 *start) {
-  /* Each round halves the way of every surface vertex of a bad tet; after the last they stand at their sites, where all
-   * tets are positive. */
-  enum { HALVINGS = 6 };
-  for (int round = 0;; round++) {
-    bool bad = false;
-    for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(layer->context, "snap", t, layer->tet_count); t++) {
-      if (layer->tet[t][0] < 0 || is_positive(layer, (int32_t)t)) continue;
-      bad = true;
-      for (int k = 0; k < 4; k++) {
-        const int32_t v = layer->tet[t][k];
-        if (layer->depth[v] != 0) continue;
-        layer->position[v] = round < HALVINGS ? v3_lerp(start[v], layer->position[v], 0.5) : start[v];
-        layer->off_surface[v] = true;
-      }
+static double count_tangled(const void *user, size_t begin, size_t end) {
+  const laves__layer *layer = user;
+  double count = 0;
+  for (size_t t = begin; t < end; t++) count += layer->tet[t][0] >= 0 && !is_positive(layer, (int32_t)t);
+  return count;
+}
+
+/* Halves the way of every surface vertex of a bad tet, or sends it back to its site. */
+static void draw_back(laves__layer *layer, const laves__vec3 *start, bool whole_way) {
+  for (size_t t = 0; t < layer->tet_count; t++) {
+    if (layer->tet[t][0] < 0 || is_positive(layer, (int32_t)t)) continue;
+    for (int k = 0; k < 4; k++) {
+      const int32_t v = layer->tet[t][k];
+      if (layer->depth[v] != 0) continue;
+      layer->position[v] = whole_way ? start[v] : v3_lerp(start[v], layer->position[v], 0.5);
+      layer->off_surface[v] = true;
     }
-    if (!bad) break;
+  }
+}
+
+size_t laves__layer_untangle(laves__layer *layer, const laves__vec3 *start) {
+  /* After the last round they stand at their sites, where all tets are positive. */
+  enum { HALVINGS = 6 };
+  for (int round = 0; laves__parallel_sum(layer->context, "snap", layer->tet_count, count_tangled, layer) > 0; round++) {
+    if (laves__is_cancelled(layer->context)) break;
+    draw_back(layer, start, round >= HALVINGS);
   }
   size_t count = 0;
   for (size_t v = 0; v < layer->vertex_count; v++) count += layer->off_surface[v];

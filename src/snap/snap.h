@@ -12,6 +12,7 @@
  *     pinch.c   places where the result would touch itself are trimmed or parted, so that the boundary is a manifold
  *     speck.c   parts of a few tets that hang together with nothing are dropped
  *     lost.c    what was trimmed, parted or dropped is named, with its place
+ *     depth.c   how many edges each site is from the boundary, which tells what belongs to its layer
  *     place.c   the boundary layer as a mesh of its own, ON vertices moved to the surface
  *
  * All of this works on the tiling and on a graded background alike: background/site.h is where they ask. What is a length in
@@ -114,6 +115,10 @@ typedef struct laves__cuts {
 #define LAVES__CUT_VERTEX (UINT32_C(1) << 31)
 
 void laves__cuts_free(laves__cuts *cuts);
+
+/* Depths of sites up to LAVES__DEPTH_MAX; no site that has a record may have one yet. Pieces may be NULL. False after a cancel.
+ */
+bool laves__measure_depths(laves__lattice *lattice, const laves__cuts *cuts);
 
 /* The last step. Pieces may be NULL: no tet is cut. An ON site whose star is whole is an inner vertex of the layer. */
 laves_result laves__layer_build(const laves__feet *feet, laves__lattice *lattice, laves__parted *parted, const laves__cuts *cuts,

@@ -24,30 +24,41 @@ static laves__guarantee promised_window(const laves__guarantee *g) {
 
 /* The same for the tets of a batch: how many are. A quotient of positive numbers is at least 1 when the first is no less than the
  * second, so laves__guarantee_margin() need not divide to be compared with 1. */
-static size_t count_broken_of(laves__shape_batch *batch, int count, const laves__guarantee *promised) {
+static int count_broken_of(laves__shape_batch *batch, int count, const laves__guarantee *promised) {
   double fits[LAVES__SHAPE_BATCH];
-  size_t broken = 0;
+  int broken = 0;
   laves__shape_batch_measure(batch);
   laves__shape_batch_fits(batch, 1 - promised->cos_min, 1 + promised->cos_max, fits);
   for (int lane = 0; lane < count; lane++) broken += fits[lane] == 0;
   return broken;
 }
 
-size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced) {
-  const laves__guarantee promised = promised_window(guarantee);
+typedef struct broken_count {
+  laves__guarantee promised;
+  const laves__layer *layer;
+  const bool *forced;
+} broken_count;
+
+static double count_broken(const void *user, size_t begin, size_t end) {
+  const broken_count *c = user;
   laves__shape_batch batch = {.determinant = {0}}; /* lanes that stay empty are measured, too */
-  size_t broken = 0;
+  double broken = 0;
   int count = 0;
-  for (size_t t = 0; t < layer->tet_count && !laves__cancelled_at(layer->context, "stuff", t, layer->tet_count); t++) {
-    if (layer->tet[t][0] < 0 || (forced && forced[t])) continue;
+  for (size_t t = begin; t < end; t++) {
+    if (c->layer->tet[t][0] < 0 || (c->forced && c->forced[t])) continue;
     laves__vec3 p[4];
-    laves__layer_points(layer, (int32_t)t, p);
+    laves__layer_points(c->layer, (int32_t)t, p);
     laves__shape_batch_set(&batch, count++, p);
     if (count < LAVES__SHAPE_BATCH) continue;
-    broken += count_broken_of(&batch, count, &promised);
+    broken += count_broken_of(&batch, count, &c->promised);
     count = 0;
   }
-  return broken + count_broken_of(&batch, count, &promised);
+  return broken + count_broken_of(&batch, count, &c->promised);
+}
+
+size_t laves__count_broken(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced) {
+  const broken_count c = {promised_window(guarantee), layer, forced};
+  return (size_t)laves__parallel_sum(layer->context, "stuff", layer->tet_count, count_broken, &c);
 }
 
 bool laves__is_broken(const laves__guarantee *guarantee, const laves__layer *layer) {

@@ -1,4 +1,5 @@
 /* The parallel loop: every index once, workers in range, cancelling, progress from the calling thread only. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -101,11 +102,40 @@ static void cancelling_ends_all_workers(void **state) {
   laves_context_free(context);
 }
 
+static double add(const void *user, size_t begin, size_t end) {
+  const double *value = user;
+  double sum = 0;
+  for (size_t i = begin; i < end; i++) sum += value[i];
+  return sum;
+}
+
+/* Values whose sum depends on the order in which they are added. */
+static void sums_have_the_same_bits_for_any_number_of_threads(void **state) {
+  (void)state;
+  enum { COUNT = 100003 };
+  static const size_t counts[] = {0, 1, 31, 32, 33, 1024 * 32, 1024 * 32 + 1, COUNT};
+  static double value[COUNT];
+  for (size_t i = 0; i < COUNT; i++) value[i] = 1e8 / (double)(1 + i * 7919 % COUNT) - 1;
+  for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
+    double first = 0;
+    for (int threads = 1; threads <= 4; threads++) {
+      laves_context *context = create(threads, NULL, NULL);
+      const double sum = laves__parallel_sum(context, NULL, counts[c], add, value);
+      if (threads == 1) first = sum;
+      assert_memory_equal(&sum, &first, sizeof sum);
+      laves_context_free(context);
+    }
+    const double plain = add(value, 0, counts[c]);
+    assert_true(fabs(first - plain) <= 1e-10 * (1 + fabs(plain)));
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_index_is_visited_once),
       cmocka_unit_test(cancelling_skips_the_rest),
       cmocka_unit_test(cancelling_ends_all_workers),
+      cmocka_unit_test(sums_have_the_same_bits_for_any_number_of_threads),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
