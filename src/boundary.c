@@ -150,7 +150,7 @@ laves_result laves__make_boundary(laves__run *r) {
     const double factor =
         laves__options_correction(r->options, (int64_t)((double)tets * r->kept), (int64_t)((double)vertices * r->kept));
     if (tets == 0) return laves__nothing_resolved(r);
-    if (factor == 1 || search.step == search.steps) break;
+    if (factor == 1 || search.step == search.steps || r->settled) break;
     correct_size(r, &search, factor);
   }
   const double share = laves__filled_share(r);

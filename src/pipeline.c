@@ -90,18 +90,26 @@ static laves_result make_mesh(laves__run *r, laves_mesh **mesh) {
   return result;
 }
 
-/* Where sizes vary or features are kept improvement may cost some per cent of a count that was asked for; then all is made again,
- * once, for a count that is larger by as much. */
+/* Where sizes vary or features are kept improvement may cost some per cent of a count that was asked for; then all is made again
+ * for a count that is larger by as much. Where features crowd, that share jumps with the size: some sizes are tried, and in the
+ * end the best of them is taken. */
 static laves_result count_again(laves__run *r, laves_mesh **mesh, bool *again) {
-  enum { RECOUNTS = 2 };
-  static const double tolerance = 0.02;
+  enum { RECOUNTS = 5 };
+  static const double tolerance = 0.025;
   const laves_options *o = r->options;
   const double wished = o->tet_target ? (double)o->tet_target : (double)o->vertex_target;
   const double got = o->tet_target ? (double)(*mesh)->tet_count : (double)(*mesh)->vertex_count;
-  *again = (r->sizes || r->frame.features) && has_target(o) && r->recounts < RECOUNTS && fabs(got / wished - 1) > tolerance;
+  *again = (r->sizes || r->frame.features) && has_target(o) && !r->settled && fabs(got / wished - 1) > tolerance;
   if (!*again) return LAVES_OK;
-  r->recounts++;
+  if (r->recounts == 0 || fabs(log(got / wished)) < r->least_miss) {
+    r->least_miss = fabs(log(got / wished));
+    r->best_size = r->frame.size;
+  }
   r->kept = got / r->counted;
+  r->settled = r->recounts++ == RECOUNTS;
+  if (r->settled) *again = r->frame.size != r->best_size;
+  if (!*again) return LAVES_OK;
+  if (r->settled) r->frame.size = r->best_size;
   laves_mesh_free(*mesh);
   *mesh = NULL;
   return LAVES_OK;

@@ -41,6 +41,8 @@ typedef struct laves__run {
   const laves__guarantee *guarantee; /* NULL: nothing is promised */
   double counted, kept;              /* tets or vertices before improvement, whichever are asked for; their share after it */
   int recounts;                      /* how often all was made again for a count */
+  double best_size, least_miss;      /* of those: the size that came nearest, and how far that is off, as a logarithm */
+  bool settled;                      /* the size is that one, and is no longer corrected */
   int round;                         /* of refinement for the sake of the distance */
   size_t distant;                    /* places still further away than asked */
   laves__vec3 distant_place;         /* the furthest of them */

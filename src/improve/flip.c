@@ -210,6 +210,15 @@ static bool may_open(const flipping *f, int32_t a, int32_t b, const ring *r) {
   return laves__fit_within(&fit, &LAVES__FIT_LIMIT);
 }
 
+/* Whether the fresh tets lack less than the old; see laves__lacks_less(). */
+static bool helps(const flipping *f, const change *c) {
+  double before = 0, then = 0;
+  if (!laves__weighs_all(f->layer)) return true;
+  for (int i = 0; i < c->old_count; i++) before += laves__shortfall(f->layer->quality[c->old[i]]);
+  for (int i = 0; i < c->fresh_count; i++) then += laves__shortfall(c->quality[i]);
+  return then < before;
+}
+
 /* The best way to do without an edge; false when there is none better than `needed`. */
 static bool without_edge(const flipping *f, int32_t a, int32_t b, change *c) {
   ring r;
@@ -227,7 +236,7 @@ static bool without_edge(const flipping *f, int32_t a, int32_t b, change *c) {
   if (!(t.best[0][r.count - 1] > needed)) return false;
   if (r.open && !may_open(f, a, b, &r)) return false;
   list_triangulation(f, a, b, &r, &t, 0, r.count - 1, c);
-  return c->worst > needed && has_room(f, c);
+  return c->worst > needed && helps(f, c) && has_room(f, c);
 }
 
 /* Three tets around a new edge in the place of two at a face. */
@@ -253,7 +262,7 @@ static bool without_face(const flipping *f, int32_t tet, int corner, change *c) 
     add_fresh(f, c, fresh[0], fresh[1], fresh[2], fresh[3], quality_of(f, fresh));
     if (!(c->worst > fmax(c->before + least_gain, LAVES__FLAT))) return false;
   }
-  return has_room(f, c);
+  return helps(f, c) && has_room(f, c);
 }
 
 /* ---- what is there elsewhere ---- */

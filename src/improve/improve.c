@@ -8,7 +8,9 @@
  * the octree to the next the size at most doubles, and blocks are fifteen to thirty times what lies in them.)
  *
  * First passes only smooth; when that no longer helps, contraction joins in; the few that are still clearly outside are
- * treated once more with more smoothing around each contraction. On a graded background flips join in from the first.
+ * treated once more with more smoothing around each contraction. On a graded background flips join in from the first. A flip,
+ * contraction or split is kept when the worst of what it touches rises; where features are kept, all that it touches must also
+ * lack less of what is asked, taken together.
  *
  * Where the layer has a mask of what is fresh, only tets with such a vertex are worked on; what is known of the others is that
  * nothing helped. */
@@ -35,7 +37,7 @@ enum {
  * few passes of contraction, and no more patience. */
 static const double crowd = 0.03;
 static const size_t crowd_min = 2000; /* tets; fewer never are a crowd */
-/* Where creases crowd, the thorough passes are for what is far outside: they can't cure the rest, and spoil others. */
+/* Where creases crowd, no patience is left for what remains once some of them were let go of. */
 static const size_t crease_crowd_min = 500; /* tets */
 /* Where even more than this share is bad after one pass, the solid is noise at this size: smoothing goes on for one more pass
  * only, and only tets far outside get a contraction. */
@@ -319,14 +321,6 @@ static bool is_crowded(const work *w, double share, size_t least) {
   return bad > least && (double)bad > share * (double)w->population;
 }
 
-/* Whether the bad ones are a large share of the tets that live. */
-static bool is_rough(const work *w) {
-  size_t alive = 0;
-  for (size_t i = 0; i < count_tets(w); i++) alive += w->layer->tet[tet_at(w, i)][0] >= 0;
-  const size_t bad = count_bad(w);
-  return bad > crowd_min && (double)bad > rough_share * (double)alive;
-}
-
 /* Patience is new for all that remains. */
 static void forget(work *w) {
   for (size_t t = 0; t < w->layer->tet_count; t++) {
@@ -349,7 +343,7 @@ static laves_result mend_tiling(work *w, bool brief, laves_error *error) {
   if (result == LAVES_OK) result = run_passes(w, rough ? 1 : crowded ? CROWD_PASSES : CONTRACT_PASSES, 2, error);
   if (result == LAVES_OK) peel_all(w);
   w->rounds = THOROUGH_ROUNDS;
-  w->admission.below = w->layer->hold && is_crowded(w, crowd, crease_crowd_min) ? far_outside : thorough_below;
+  w->admission.below = thorough_below;
   forget(w);
   const int patience = is_crowded(w, 0, crowd_min) ? 1 : 2;
   if (result == LAVES_OK && !crowded && !rough) result = run_passes(w, CONTRACT_PASSES, patience, error);
@@ -457,15 +451,18 @@ static void leave_out_sharp(work *w, const laves__window *window) {
 }
 
 /* Creases and corners come first: their vertices go where they belong, as far as tets allow, and smoothing and contraction make
- * room for the rest of the way. Where the solid is noise, contraction is for tets far outside only. */
+ * room for the rest of the way. Where creases crowd, contraction is for tets far outside only: the others can't all be cured
+ * before everything is in its place, and what is tried spoils their neighbours. */
 static laves_result bring_home(work *w, laves_error *error) {
   enum { ROUNDS = 6, SMOOTH_ROUNDS = 2 };
   static const double home_floor = 0.05; /* quality that coming home may cost: about 9 degrees */
+  static const double home_crowd = 0.01; /* share of bad tets, and their number, beyond which creases crowd */
+  static const size_t home_crowd_min = 250;
   laves_result result = run_passes(w, 1, 1, error);
   for (int round = 0; result == LAVES_OK && round < ROUNDS && count_off(w) > 0; round++) {
     settle_all(w, home_floor);
     w->rounds = round >= SMOOTH_ROUNDS;
-    if (w->rounds > 0 && is_rough(w)) w->admission.below = far_outside;
+    if (w->rounds > 0 && is_crowded(w, home_crowd, home_crowd_min)) w->admission.below = far_outside;
     result = run_passes(w, 1, 1, error);
   }
   w->admission.below = 1;

@@ -1,6 +1,8 @@
 /* Remembering and undoing changes of the layer. */
 #include "improve/journal.h"
 
+#include "improve/measure.h"
+
 #include <string.h>
 
 void laves__journal_free(laves__journal *j) {
@@ -56,6 +58,17 @@ bool laves__journal_star_add(laves__journal *j, laves__layer *layer, int32_t v, 
   if (laves__star_add(layer->context, &layer->star[v], t)) return true;
   j->short_of_memory = true;
   return false;
+}
+
+bool laves__lacks_less(const laves__layer *layer, const laves__journal *j) {
+  double before = 0, now = 0;
+  if (!laves__weighs_all(layer)) return true;
+  for (size_t i = 0; i < j->tet_count; i++) {
+    const laves__tet_entry *was = &j->tet[i];
+    if (was->corner[0] >= 0) before += laves__shortfall(was->quality);
+    if (layer->tet[was->tet][0] >= 0) now += laves__shortfall(layer->quality[was->tet]);
+  }
+  return now < before;
 }
 
 void laves__journal_undo(laves__journal *j, laves__layer *layer) {

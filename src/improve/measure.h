@@ -96,6 +96,16 @@ static inline double laves__layer_quality(const laves__measure *m, const laves__
   return laves__quality(m, p, laves__layer_cube(layer, tet), laves__measure_fixed(m, layer, tet));
 }
 
+/* Whether a step must also make what all tets that it touches lack of what is asked, taken together, less. Where features crowd,
+ * one that is bad would else be cured at the cost of many, again and again. Elsewhere they get well in turn; and where the
+ * boundary is given there is a schedule that goes from the worst to the others. */
+static inline bool laves__weighs_all(const laves__layer *layer) { return layer->hold && !layer->patch; }
+
+/* What a tet lacks; that it is outside counts by itself, so that one that is far outside is not traded for many that are so by
+ * little. */
+#define LAVES__OUTSIDE_COST 0.05
+static inline double laves__shortfall(double quality) { return quality < 1 ? LAVES__OUTSIDE_COST + 1 - quality : 0; }
+
 /* The same for the tets [begin, end), several at once: quality[t - begin] of those that live. The digits are the same. */
 void laves__measure_tets(const laves__measure *m, const laves__layer *layer, size_t begin, size_t end, double *quality);
 
