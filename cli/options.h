@@ -146,7 +146,12 @@ void options_release(settings *given);
  * line. *count of them in an array for free(); NULL without memory. */
 const char **options_command(const settings *given, int *count);
 
-/* ---- words that parser and help share ---- */
+/* ---- words that parser, commands and help share ---- */
+
+/* The index of a value in the list of those that there are; else -1 with half a sentence that follows the option's name:
+ * "must be x, y or z, not 'w'", and the nearest of them, if one is near, in `wrong`, of OPTION_SENTENCE_CAPACITY. */
+enum { OPTION_SENTENCE_CAPACITY = 300 };
+int option_choose(const char *text, const char *const *names, int count, char *wrong);
 
 /* "above 0", "0..9", "1 or more"; returns text. */
 const char *option_range(const option *row, char *text, size_t size);
