@@ -254,6 +254,7 @@ static bool store_value(const option *row, const char *text, settings *given, ch
     case OPTION_SWITCH:
       return parse_switch(text, member, wrong);
     case OPTION_WORD:
+    case OPTION_AUTO:
       *(const char **)member = text;
       return true;
     case OPTION_WORDS:
@@ -376,6 +377,16 @@ static void note_words(const parser *state, const option *row) {
   given->job_after = state->next;
 }
 
+/* What follows an option is its value, but for another option; negative numbers are none. NULL: no value. */
+static const char *take_value(parser *state) {
+  if (state->next == state->count) return NULL;
+  const char *word = state->words[state->next];
+  const bool is_option = word[0] == '-' && word[1] != '\0' && strcspn(word + 1, "0123456789.") > 0;
+  if (is_option) return NULL;
+  ++state->next;
+  return word;
+}
+
 /* `value` is what stood behind = or the letter, or NULL. */
 static options_outcome take_option(parser *state, const option *row, const char *value) {
   char wrong[SENTENCE_CAPACITY] = "", sentence[SENTENCE_CAPACITY + 80];
@@ -384,13 +395,10 @@ static options_outcome take_option(parser *state, const option *row, const char 
     snprintf(sentence, sizeof sentence, "option '--%s' takes no value", row->name);
     return wrong_usage(state, sentence);
   }
-  if (row->kind != OPTION_FLAG && !value && state->next < state->count) {
-    const char *word = state->words[state->next];
-    const bool is_option = word[0] == '-' && word[1] != '\0' && strcspn(word + 1, "0123456789.") > 0;
-    if (!is_option) {
-      value = word;
-      ++state->next;
-    }
+  if (row->kind != OPTION_FLAG && !value) value = take_value(state);
+  if (row->kind == OPTION_AUTO && !value) {
+    value = "auto";
+    if (!state->over) state->given->auto_after = state->current;
   }
   if (row->kind != OPTION_FLAG && (!value || *value == '\0')) {
     snprintf(sentence, sizeof sentence, "option '--%s' needs a value: --%s %s", row->name, row->name, row->argument);
@@ -464,7 +472,7 @@ void options_release(settings *given) {
 
 const char **options_command(const settings *given, int *count) {
   const int job_words = given->job ? given->job->count : 0;
-  const char **words = malloc((size_t)(2 + job_words + given->word_count) * sizeof *words);
+  const char **words = malloc((size_t)(3 + job_words + given->word_count) * sizeof *words);
   *count = 0;
   if (!words) return NULL;
   words[(*count)++] = "laves";
@@ -474,6 +482,7 @@ const char **options_command(const settings *given, int *count) {
   }
   for (int i = 0; i < given->word_count; ++i) {
     if (i < given->job_first || i >= given->job_after) words[(*count)++] = given->words[i];
+    if (i == given->auto_after) words[(*count)++] = "auto"; /* what follows --job may be the input */
   }
   return words;
 }
@@ -482,6 +491,7 @@ options_outcome options_parse(const command *about, int count, char **words, set
   *given = (settings){.command = about->name,
                       .word_count = count,
                       .words = words,
+                      .auto_after = -1,
                       .volume_length = -1,
                       .order = 1,
                       .guarantee = 14.4,
@@ -507,6 +517,9 @@ options_outcome options_parse(const command *about, int count, char **words, set
   if (about->argument && (!given->input || given->input[0] == '\0')) {
     char sentence[SENTENCE_CAPACITY];
     snprintf(sentence, sizeof sentence, "%s is missing: laves %s %s", about->argument, about->name, about->argument);
+    if (given->report && strcmp(given->report, "auto") != 0)
+      snprintf(sentence, sizeof sentence, "%s is missing: '%.100s' is the page of '--report'; put %s before that",
+               about->argument, given->report, about->argument);
     return wrong_usage(&state, sentence);
   }
   if (given->format != LAVES_FORMAT_AUTO && given->outputs.count > 1) {

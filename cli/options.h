@@ -38,6 +38,7 @@ typedef struct settings {
   int word_count;           /* of the command line, behind the command's name */
   char **words;             /* of the command line */
   int job_first, job_after; /* those of them that are --job itself */
+  int auto_after;           /* the one behind which "auto" is understood, or -1 */
   const char *input;        /* NULL where the command takes none */
   option_texts outputs;
   const char *boundary, *json, *surface; /* NULL: not given */
@@ -83,6 +84,7 @@ typedef enum option_kind {
   OPTION_SWITCH,    /* bool: yes or no */
   OPTION_WORD,      /* const char * */
   OPTION_WORDS,     /* option_texts, of `high` at most */
+  OPTION_AUTO,      /* const char *: "auto" where no value follows */
   OPTION_REAL,      /* double */
   OPTION_COUNT,     /* int64_t; 50k, 1.5M */
   OPTION_BYTES,     /* int64_t; 500M, 2G, powers of 1024 */
