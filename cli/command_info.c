@@ -85,11 +85,17 @@ static uint64_t about(double count) {
   return (uint64_t)(step * round(count / step));
 }
 
+/* Two digits: times have hardly one. */
+static double roughly(double seconds) {
+  const double step = pow(10, floor(log10(seconds)) - 1);
+  return step * round(seconds / step);
+}
+
 static void say_cost(const info_run *all) {
   text_buffer tets, vertices, bytes, seconds;
-  text_say("at size %.4g: about %s, %s, %s, %s of one core", all->cost.size, text_plural(&tets, about(all->cost.tets), "tet"),
-           text_plural(&vertices, about(all->cost.vertices), "vertex"), text_bytes(&bytes, all->cost.bytes),
-           text_seconds(&seconds, all->cost.cpu_seconds));
+  text_say("at size %.4g: about %s, %s, %s, roughly %s of one core", all->cost.size,
+           text_plural(&tets, about(all->cost.tets), "tet"), text_plural(&vertices, about(all->cost.vertices), "vertex"),
+           text_bytes(&bytes, all->cost.bytes), text_seconds(&seconds, roughly(all->cost.cpu_seconds)));
 }
 
 static laves_result info_steps(session *run, info_run *all) {

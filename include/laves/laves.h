@@ -500,7 +500,9 @@ typedef struct laves_expectation {
   double vertices;    ///< the same; up to a quarter too few where most of the mesh is near the surface
   double peak_bytes;  ///< most memory that laves_generate() will make the context hold, with what it holds now; within a quarter
   double certify_bytes;  ///< the same of laves_certify() and laves_mesh_write(), rough: up to twice as much where implicit solids
-                         ///< have creases
+                         ///< have creases, three times where their walls are a few sizes thin
+  size_t creases;        ///< of a surface, that are to be kept, about as laves_report.creases; 0 for other solids, whose creases
+                         ///< take long to find
 } laves_expectation;
 
 /// Estimates the counts and the memory of a mesh, with all that makes sizes vary. What is over the context's memory limit is told
