@@ -173,11 +173,13 @@ LAVES_API laves_result laves_domain_from_triangles_with(laves_context *context, 
 
 /// A solid given by a function of the caller's.
 typedef struct laves_function {
-  /// values[i] = phi(points[3i..3i+2]) for i < count: negative inside, zero on the surface, positive outside; finite.
+  /// values[i] = phi(points[3i..3i+2]) for i < count: negative inside, zero on the surface, positive outside. What is no number
+  /// counts as outside; laves_report.warnings then has how many and where.
   /// Called from several threads at once, with counts of one to some hundred: as many as can be asked for at a time.
   void (*evaluate)(void *user, const double *points, size_t count, double *values);
   void *user;
-  double lower[3], upper[3];  ///< a box that contains the solid with a little room
+  double lower[3], upper[3];  ///< a box that contains the solid with a little room; where it does not, and the solid is followed
+                              ///< beyond it, laves_report.warnings says so, or laves_generate() refuses it
   /// |phi(a) - phi(b)| <= lipschitz * |a - b|, which lets far regions be skipped; 0: unknown, everything is evaluated
   double lipschitz;
 } laves_function;

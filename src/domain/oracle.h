@@ -122,5 +122,8 @@ laves_result laves__implicit_build(laves_context *context, const char *text, siz
 
 laves_result laves__function_build(laves_context *context, const laves_function *function, laves_domain *domain,
                                    laves_error *error);
+/* How many values of a caller's function were no numbers since it became a domain, and the least of the places by x, y and z, in
+ * input coordinates. 0 for domains of other kinds. */
+size_t laves__function_gaps(const laves_domain *domain, laves__vec3 *place);
 
 #endif
