@@ -286,7 +286,9 @@ typedef struct laves_thin_place {
 /// Finds the thinnest parts of a surface by chords shot inwards from the surface at a fixed set of samples.
 /// @param places    out: laves_thin_place[capacity], thinnest first, places at least twice their thickness apart
 /// @param capacity  how many places at most
-/// @return how many were found; 0 for domains that are not surfaces
+/// @return how many were found. 0: none, or the domain is no surface, and places[0].thickness is INFINITY; or memory was short,
+/// and
+///         it is NAN. (With a capacity of 0 nothing is told.)
 LAVES_API size_t laves_domain_thin_places(const laves_domain *domain, laves_thin_place *places, size_t capacity);
 /// The same for the narrowest gaps, by chords shot outwards.
 LAVES_API size_t laves_domain_gap_places(const laves_domain *domain, laves_thin_place *places, size_t capacity);

@@ -75,7 +75,8 @@ typedef struct laves__oracle {
   /* Where the surface is made of triangles, whether or not all of them bound the solid: they; see surface.h. Else NULL. */
   const struct laves__surface *surface;
 
-  /* Up to `capacity` thin walls or gaps, thinnest first; NULL: not available. */
+  /* Up to `capacity` thin walls or gaps, thinnest first; without memory none, and places[0].thickness is NAN. NULL: not
+   * available. */
   size_t (*thin_places)(const void *self, laves_thin_kind kind, laves_thin_place *places, size_t capacity);
 
   /* Patches, and segments of creases, as features.h tells; NULL: the surface is one smooth patch as far as is known.
