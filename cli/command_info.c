@@ -85,11 +85,26 @@ static uint64_t about(double count) {
   return (uint64_t)(step * round(count / step));
 }
 
+/* Two digits: times have hardly one. */
+static double roughly(double seconds) {
+  const double step = pow(10, floor(log10(seconds)) - 1);
+  return step * round(seconds / step);
+}
+
 static void say_cost(const info_run *all) {
   text_buffer tets, vertices, bytes, seconds;
-  text_say("at size %.4g: about %s, %s, %s, %s of one core", all->cost.size, text_plural(&tets, about(all->cost.tets), "tet"),
-           text_plural(&vertices, about(all->cost.vertices), "vertex"), text_bytes(&bytes, all->cost.bytes),
-           text_seconds(&seconds, all->cost.cpu_seconds));
+  text_say("at size %.4g: about %s, %s, %s, roughly %s of one core", all->cost.size,
+           text_plural(&tets, about(all->cost.tets), "tet"), text_plural(&vertices, about(all->cost.vertices), "vertex"),
+           text_bytes(&bytes, all->cost.bytes), text_seconds(&seconds, roughly(all->cost.cpu_seconds)));
+}
+
+/* The thinnest walls, or gaps. */
+static laves_result find_thin(session *run, const info_run *all,
+                              size_t (*find)(const laves_domain *domain, laves_thin_place *places, size_t capacity),
+                              thin_list *list) {
+  list->count = find(all->in.domain, list->place, THIN_CAPACITY);
+  if (list->count > 0 || !isnan(list->place[0].thickness)) return LAVES_OK;
+  return session_fail(run, LAVES_ERROR_MEMORY, "no memory to look for thin places");
 }
 
 static laves_result info_steps(session *run, info_run *all) {
@@ -102,10 +117,10 @@ static laves_result info_steps(session *run, info_run *all) {
   if (all->has_cost) result = estimate_expect(run, &all->in, all->sizing, all->features, &all->cost);
   if (result != LAVES_OK) return result;
   const double start = progress_now();
-  all->walls.count = laves_domain_thin_places(all->in.domain, all->walls.place, THIN_CAPACITY);
-  all->gaps.count = laves_domain_gap_places(all->in.domain, all->gaps.place, THIN_CAPACITY);
+  result = find_thin(run, all, laves_domain_thin_places, &all->walls);
+  if (result == LAVES_OK) result = find_thin(run, all, laves_domain_gap_places, &all->gaps);
   all->thin_seconds = progress_now() - start;
-  result = session_settle(run, LAVES_OK);
+  result = session_settle(run, result);
   if (result != LAVES_OK) return result;
   if (session_speaks(run)) summary_input(&all->in, true);
   if (!all->has_cost) return session_fail(run, LAVES_ERROR_INPUT, "the input has no inside: its volume is zero");

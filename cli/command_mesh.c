@@ -143,7 +143,7 @@ static void say_mesh(const session *run, const mesh_run *all) {
   warn_of_volume(all);
   if (promise_broken(all)) text_warning("the mesh leaves the window that was promised for it; please report this input");
   outputs_say(&all->plan);
-  if (all->page.bytes > 0) report_say(&all->page, run->given->report);
+  if (all->page.bytes > 0) report_say(&all->page, all->plan.report);
 }
 
 /* The page of --report, which needs the mesh in memory. */
@@ -154,7 +154,7 @@ static laves_result write_report_page(session *run, mesh_run *all) {
                                   .certificate = &all->certificate,
                                   .defects = all->in.defects,
                                   .making = &all->report};
-  return report_write(run, &subject, run->given->report, &all->page);
+  return report_write(run, &subject, all->plan.report, &all->page);
 }
 
 static laves_result mesh_steps(session *run, mesh_run *all) {
@@ -164,7 +164,7 @@ static laves_result mesh_steps(session *run, mesh_run *all) {
   laves_result result = second_order_check(run);
   if (result == LAVES_OK) result = outputs_plan(run, fallback, given->input, &all->plan);
   if (result == LAVES_OK) result = outputs_plan_certificate(run, given->input, &all->plan);
-  if (result == LAVES_OK && given->report) result = outputs_check_report(run, given->input, &all->plan);
+  if (result == LAVES_OK) result = outputs_plan_report(run, given->input, &all->plan);
   if (result == LAVES_OK) result = sizing_open(run, &all->sizing);
   if (result == LAVES_OK) result = features_open(run, &all->features);
   if (result == LAVES_OK) result = input_open(run, given->input, &all->in);
@@ -322,7 +322,7 @@ static void mesh_json(json *out, const session *run, const void *facts) {
   if (all->mesh) groups_write_json(out, all->mesh);
   outputs_write_json(out, &all->plan);
   json_text(out, "certificate", all->plan.certificate_bytes > 0 ? all->plan.certificate : NULL);
-  if (run->given->report) report_write_json(out, &all->page, run->given->report);
+  if (run->given->report) report_write_json(out, &all->page, all->plan.report);
   if (all->mesh) write_times(out, run, all);
   json_open_array(out, "warnings");
   for (int i = 0; i < all->report.warning_count; ++i) json_text(out, NULL, all->report.warnings[i]);

@@ -262,8 +262,10 @@ const option option_rows[] = {
      "write a certificate of the mesh"},
     {"output", 'o', REPORT, IN_FILES, OPTION_WORDS, "FILE", NULL, false, 0, OUTPUT_CAPACITY, NULL, MEMBER(outputs), 0,
      "where the page goes (HTML); needed"},
-    {"report", 0, MESH, IN_FILES, OPTION_WORD, "FILE", NULL, false, 0, 0, NULL, MEMBER(report), 0,
-     "also write a page that shows the mesh in any browser (HTML; docs/report.md)"},
+    {"report", 0, MESH, IN_FILES, OPTION_AUTO, "auto|FILE", NULL, false, 0, 0, NULL, MEMBER(report), 0,
+     "also write a page that shows the mesh in any browser (HTML; docs/report.md); auto, or no value: the first output's name "
+     "with "
+     ".html for its extension"},
     {"whole", 0, MESH | REPORT, IN_FILES, OPTION_COUNT, "N", "tetrahedra", false, 0, 2e7, "400k", MEMBER(whole), 0,
      "the page holds meshes of up to so many tetrahedra whole, and of larger ones the boundary, sections along the axes and the "
      "worst tetrahedra"},

@@ -20,12 +20,11 @@
 
 enum { WIDEST = 16384, CHANNELS = 4 };
 
-/* The index of a word in a list, or -1. */
-static int word_index(const char *word, const char *const *words, int count) {
-  for (int i = 0; i < count; ++i) {
-    if (strcmp(word, words[i]) == 0) return i;
-  }
-  return -1;
+/* Sets *index to where an option's value stands in the list of those that there are. */
+static laves_result choose(session *run, const char *name, const char *value, const char *const *names, int count, int *index) {
+  char wrong[OPTION_SENTENCE_CAPACITY];
+  *index = option_choose(value, names, count, wrong);
+  return *index >= 0 ? LAVES_OK : session_fail(run, LAVES_ERROR_OPTION, "option '--%s' %s", name, wrong);
 }
 
 /* Degrees, as features are looked for by default. */
@@ -49,19 +48,13 @@ static laves_result read_words(session *run, scene_options *what, picture_option
   static const char *const colours[] = {"class", "dihedral", "quality", "size", "distance"};
   static const char *const backgrounds[] = {"white", "transparent", "dark"};
   const settings *given = run->given;
-  const int up = word_index(given->up, axes, 3), colour = word_index(given->color, colours, 5);
-  const int background = word_index(given->background, backgrounds, 3);
-  if (up < 0) return session_fail(run, LAVES_ERROR_OPTION, "option '--up' must be x, y or z, not '%.30s'", given->up);
-  if (colour < 0) {
-    return session_fail(run, LAVES_ERROR_OPTION,
-                        "option '--color' must be class, dihedral, quality, size or distance, not '%.30s'", given->color);
-  }
+  int up = 0, colour = 0, background = 0;
+  laves_result result = choose(run, "up", given->up, axes, 3, &up);
+  if (result == LAVES_OK) result = choose(run, "color", given->color, colours, 5, &colour);
+  if (result == LAVES_OK) result = choose(run, "background", given->background, backgrounds, 3, &background);
+  if (result != LAVES_OK) return result;
   if ((colour == SCENE_DISTANCE) != (given->surface != NULL)) {
     return session_fail(run, LAVES_ERROR_OPTION, "'--color distance' and '--surface INPUT' go together: give both or none");
-  }
-  if (background < 0) {
-    return session_fail(run, LAVES_ERROR_OPTION, "option '--background' must be white, transparent or dark, not '%.30s'",
-                        given->background);
   }
   what->colour = (scene_colour)colour;
   how->up = up;
@@ -229,11 +222,9 @@ static laves_result read_plot(session *run, view_job *job) {
     return session_fail(run, LAVES_ERROR_OPTION, "pictures are PNG files (.png), '%.200s' is none; SVG is for plots: --plot all",
                         path);
   }
-  const int which = word_index(given->plot, names, 4);
-  if (which < 0) {
-    return session_fail(run, LAVES_ERROR_OPTION,
-                        "option '--plot' must be dihedral, radius-ratio, radius-edge or all, not '%.30s'", given->plot);
-  }
+  int which = 0;
+  const laves_result chosen = choose(run, "plot", given->plot, names, 4, &which);
+  if (chosen != LAVES_OK) return chosen;
   if (given->cut || given->worst > 0 || given->surface) {
     return session_fail(run, LAVES_ERROR_OPTION, "'--plot' counts the whole mesh: leave --cut, --worst and --surface out");
   }

@@ -194,7 +194,7 @@ static void zsh_option(FILE *file, const option *row, const command *about) {
   fprintf(file, "[%s]", short_help(row, help));
   if (row->argument) {
     const completion after = option_completion(row);
-    fputc(':', file);
+    fputs(row->kind == OPTION_AUTO ? "::" : ":", file); /* two: it may be left out */
     for (const char *c = row->argument; *c; ++c) {
       if (!strchr("[]:", *c)) fputc(*c, file);
     }

@@ -22,9 +22,14 @@ static const double tets_in_volume = 8.5815, vertices_in_volume = 1.5144;
 static const double tets_on_area = -0.15, vertices_on_area = 0.68;
 static const double default_tets = 50e3;
 
-/* Costs measured in the same runs; where sizes vary, on spheres of 50 to 500 thousand tets, most of them near the surface. */
-static const double seconds_per_varying_tet = 8e-6;
-static const double seconds_per_tet = 1e-7, seconds_per_area = 6.5e-5;
+/* Seconds of `laves mesh` with its certificate, on one core, fitted to 17 surfaces and 7 formulas of 50 and 500 thousand tets,
+ * three of them of 5 million, too: where there are few creases or none, within a factor of 2. Creases take long where they are
+ * closer than the size allows: each as much as here where a scan is rough or letters are engraved, up to six times that in
+ * walls thinner than the size, a fifth on a well resolved part; less in meshes of less surface than this many size^2. */
+static const double seconds_per_tet = 3e-7, seconds_per_area = 8.5e-5, seconds_per_triangle = 3e-6, seconds_per_crease = 0.06;
+static const double area_of_small = 2000;
+/* Where sizes vary, measured on a sphere and bunny; half of it to a quarter where they follow the curvature of a formula. */
+static const double seconds_per_varying_tet = 1.1e-5;
 
 /* Samples are taken until there are enough or the time is up: a soup of triangles answers slowly. */
 enum { SAMPLES = 1 << 17, BATCH = 1 << 8 };
@@ -126,9 +131,15 @@ bool estimate_make(session *run, const input *in, estimate *result) {
   result->size = size;
   result->tets = count_at(size, result->volume, result->area, tets_in_volume, tets_on_area);
   result->vertices = count_at(size, result->volume, result->area, vertices_in_volume, vertices_on_area);
-  const double tiles_on_area = result->area / (size * size);
-  result->cpu_seconds = seconds_per_tet * result->tets + seconds_per_area * tiles_on_area;
   return true;
+}
+
+static double expect_seconds(const input *in, const estimate *of, bool varying, size_t creases) {
+  const double tiles_on_area = of->area / (of->size * of->size);
+  const double meshing =
+      varying ? seconds_per_varying_tet * of->tets : seconds_per_tet * of->tets + seconds_per_area * tiles_on_area;
+  const double keeping = seconds_per_crease * (double)creases * fmin(1, tiles_on_area / area_of_small);
+  return meshing + keeping + seconds_per_triangle * (double)in->info.triangle_count;
 }
 
 laves_result estimate_expect(session *run, const input *in, const laves_sizing *sizing, const laves_features *features,
@@ -149,8 +160,8 @@ laves_result estimate_expect(session *run, const input *in, const laves_sizing *
     result->size = expected.size;
     result->tets = expected.tets;
     result->vertices = expected.vertices;
-    result->cpu_seconds = seconds_per_varying_tet * expected.tets;
   }
+  result->cpu_seconds = expect_seconds(in, result, varying, expected.creases);
   return session_settle(run, outcome);
 }
 

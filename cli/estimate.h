@@ -16,7 +16,8 @@ typedef struct estimate {
  * @return false when the domain is empty as far as the samples tell */
 bool estimate_make(session *run, const input *in, estimate *result);
 
-/* What the library expects: the memory; and where sizes vary, sizes, counts and costs in the place of those above. */
+/* What the library expects: the memory and, from its creases, the time; where sizes vary, also sizes and counts in the place of
+ * those above. */
 laves_result estimate_expect(session *run, const input *in, const laves_sizing *sizing, const laves_features *features,
                              estimate *result);
 

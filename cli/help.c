@@ -12,7 +12,7 @@ static const char *const kind_names[] = {
     [OPTION_SWITCH] = "switch",   [OPTION_FLAG] = "flag",     [OPTION_WORD] = "text",           [OPTION_WORDS] = "texts",
     [OPTION_REAL] = "real",       [OPTION_COUNT] = "count",   [OPTION_BYTES] = "bytes",         [OPTION_WINDOW] = "window",
     [OPTION_CELLS] = "cells",     [OPTION_FORMAT] = "format", [OPTION_ALIGNMENT] = "alignment", [OPTION_METHOD] = "method",
-    [OPTION_REGIONS] = "regions",
+    [OPTION_REGIONS] = "regions", [OPTION_AUTO] = "text",
 };
 _Static_assert(sizeof kind_names / sizeof kind_names[0] == OPTION_KINDS, "a kind has no name");
 

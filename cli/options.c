@@ -11,7 +11,7 @@
 
 /* ---- values ---- */
 
-enum { SENTENCE_CAPACITY = 300 };
+enum { SENTENCE_CAPACITY = OPTION_SENTENCE_CAPACITY };
 
 /* Reads one number from the start of text. `end` is set behind it. */
 static bool read_number(const char *text, double *value, const char **end) {
@@ -116,6 +116,34 @@ static bool parse_cells(const option *row, const char *text, option_numbers *cel
   return true;
 }
 
+/* "; did you mean 'x'?" when one of the names is near, else nothing. */
+static const char *suggestion(const char *text, const char *const *names, int count, char *sentence, size_t size) {
+  const char *near = text_nearest(text, names, (size_t)count);
+  sentence[0] = '\0';
+  if (near) snprintf(sentence, size, "; did you mean '%s'?", near);
+  return sentence;
+}
+
+/* "x, y or z" */
+static void join_names(const char *const *names, int count, char *text, size_t size) {
+  text[0] = '\0';
+  for (int i = 0; i < count; ++i) {
+    const size_t used = strlen(text);
+    snprintf(text + used, size - used, "%s%s", i == 0 ? "" : i < count - 1 ? ", " : " or ", names[i]);
+  }
+}
+
+int option_choose(const char *text, const char *const *names, int count, char *wrong) {
+  char list[SENTENCE_CAPACITY / 2], meant[64];
+  for (int i = 0; i < count; ++i) {
+    if (strcmp(text, names[i]) == 0) return i;
+  }
+  join_names(names, count, list, sizeof list);
+  snprintf(wrong, SENTENCE_CAPACITY, "must be %s, not '%.30s'%s", list, text,
+           suggestion(text, names, count, meant, sizeof meant));
+  return -1;
+}
+
 /* Rodrigues' formula: R = cos I + sin [a]x + (1 - cos) a a^T for the unit axis a. False for an axis of no length. */
 static bool rotation_about(const double axis[3], double degrees, double rotation[9]) {
   const double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
@@ -158,10 +186,13 @@ static bool parse_alignment(const char *text, option_alignment *alignment, char 
     memcpy(alignment->rotation, numbers, sizeof numbers);
     return true;
   }
-  snprintf(wrong, SENTENCE_CAPACITY, "%s",
+  static const char *const names[] = {"none", "pca"};
+  char meant[64];
+  snprintf(wrong, SENTENCE_CAPACITY, "%s%s",
            count == 9   ? "needs a rotation matrix: rows of length 1 at right angles, determinant 1"
            : count == 4 ? "needs an axis that is not of length 0"
-                        : "needs none, pca, x,y,z,angle, or the 9 numbers of a rotation matrix");
+                        : "needs none, pca, x,y,z,angle, or the 9 numbers of a rotation matrix",
+           suggestion(text, names, 2, meant, sizeof meant));
   return false;
 }
 
@@ -174,41 +205,34 @@ void option_format_names(char *text, size_t size) {
 }
 
 static bool parse_format(const char *text, laves_format *format, char *wrong) {
+  const char *names[LAVES_FORMAT_COUNT];
+  int count = 0;
   *format = laves_format_from_name(text);
   if (*format != LAVES_FORMAT_COUNT && *format != LAVES_FORMAT_AUTO) return true;
-  char names[200];
-  option_format_names(names, sizeof names);
-  snprintf(wrong, SENTENCE_CAPACITY, "must be one of %s, not '%.30s'", names, text);
+  for (int i = LAVES_FORMAT_AUTO + 1; i < LAVES_FORMAT_COUNT; ++i) names[count++] = laves_format_name((laves_format)i);
+  option_choose(text, names, count, wrong);
   return false;
 }
 
 static bool parse_method(const char *text, laves_method *method, char *wrong) {
   static const char *const names[] = {"auto", "snap", "stuff"};
-  for (int i = 0; i < 3; ++i) {
-    if (strcmp(text, names[i]) != 0) continue;
-    *method = (laves_method)i;
-    return true;
-  }
-  snprintf(wrong, SENTENCE_CAPACITY, "must be one of auto, snap, stuff, not '%.30s'", text);
-  return false;
+  const int chosen = option_choose(text, names, 3, wrong);
+  if (chosen >= 0) *method = (laves_method)chosen;
+  return chosen >= 0;
 }
 
 static bool parse_regions(const char *text, laves_regions *regions, char *wrong) {
   static const char *const names[] = {"none", "parts"};
-  for (int i = 0; i < 2; ++i) {
-    if (strcmp(text, names[i]) != 0) continue;
-    *regions = (laves_regions)i;
-    return true;
-  }
-  snprintf(wrong, SENTENCE_CAPACITY, "must be none or parts, not '%.30s'", text);
-  return false;
+  const int chosen = option_choose(text, names, 2, wrong);
+  if (chosen >= 0) *regions = (laves_regions)chosen;
+  return chosen >= 0;
 }
 
 static bool parse_switch(const char *text, bool *value, char *wrong) {
-  *value = strcmp(text, "yes") == 0;
-  if (*value || strcmp(text, "no") == 0) return true;
-  snprintf(wrong, SENTENCE_CAPACITY, "must be yes or no, not '%.30s'", text);
-  return false;
+  static const char *const names[] = {"yes", "no"};
+  const int chosen = option_choose(text, names, 2, wrong);
+  *value = chosen == 0;
+  return chosen >= 0;
 }
 
 static bool parse_words(const option *row, const char *text, option_texts *list, char *wrong) {
@@ -230,6 +254,7 @@ static bool store_value(const option *row, const char *text, settings *given, ch
     case OPTION_SWITCH:
       return parse_switch(text, member, wrong);
     case OPTION_WORD:
+    case OPTION_AUTO:
       *(const char **)member = text;
       return true;
     case OPTION_WORDS:
@@ -352,6 +377,16 @@ static void note_words(const parser *state, const option *row) {
   given->job_after = state->next;
 }
 
+/* What follows an option is its value, but for another option; negative numbers are none. NULL: no value. */
+static const char *take_value(parser *state) {
+  if (state->next == state->count) return NULL;
+  const char *word = state->words[state->next];
+  const bool is_option = word[0] == '-' && word[1] != '\0' && strcspn(word + 1, "0123456789.") > 0;
+  if (is_option) return NULL;
+  ++state->next;
+  return word;
+}
+
 /* `value` is what stood behind = or the letter, or NULL. */
 static options_outcome take_option(parser *state, const option *row, const char *value) {
   char wrong[SENTENCE_CAPACITY] = "", sentence[SENTENCE_CAPACITY + 80];
@@ -360,13 +395,10 @@ static options_outcome take_option(parser *state, const option *row, const char 
     snprintf(sentence, sizeof sentence, "option '--%s' takes no value", row->name);
     return wrong_usage(state, sentence);
   }
-  if (row->kind != OPTION_FLAG && !value && state->next < state->count) {
-    const char *word = state->words[state->next];
-    const bool is_option = word[0] == '-' && word[1] != '\0' && strcspn(word + 1, "0123456789.") > 0;
-    if (!is_option) {
-      value = word;
-      ++state->next;
-    }
+  if (row->kind != OPTION_FLAG && !value) value = take_value(state);
+  if (row->kind == OPTION_AUTO && !value) {
+    value = "auto";
+    if (!state->over) state->given->auto_after = state->current;
   }
   if (row->kind != OPTION_FLAG && (!value || *value == '\0')) {
     snprintf(sentence, sizeof sentence, "option '--%s' needs a value: --%s %s", row->name, row->name, row->argument);
@@ -440,7 +472,7 @@ void options_release(settings *given) {
 
 const char **options_command(const settings *given, int *count) {
   const int job_words = given->job ? given->job->count : 0;
-  const char **words = malloc((size_t)(2 + job_words + given->word_count) * sizeof *words);
+  const char **words = malloc((size_t)(3 + job_words + given->word_count) * sizeof *words);
   *count = 0;
   if (!words) return NULL;
   words[(*count)++] = "laves";
@@ -450,6 +482,7 @@ const char **options_command(const settings *given, int *count) {
   }
   for (int i = 0; i < given->word_count; ++i) {
     if (i < given->job_first || i >= given->job_after) words[(*count)++] = given->words[i];
+    if (i == given->auto_after) words[(*count)++] = "auto"; /* what follows --job may be the input */
   }
   return words;
 }
@@ -458,6 +491,7 @@ options_outcome options_parse(const command *about, int count, char **words, set
   *given = (settings){.command = about->name,
                       .word_count = count,
                       .words = words,
+                      .auto_after = -1,
                       .volume_length = -1,
                       .order = 1,
                       .guarantee = 14.4,
@@ -483,6 +517,9 @@ options_outcome options_parse(const command *about, int count, char **words, set
   if (about->argument && (!given->input || given->input[0] == '\0')) {
     char sentence[SENTENCE_CAPACITY];
     snprintf(sentence, sizeof sentence, "%s is missing: laves %s %s", about->argument, about->name, about->argument);
+    if (given->report && strcmp(given->report, "auto") != 0)
+      snprintf(sentence, sizeof sentence, "%s is missing: '%.100s' is the page of '--report'; put %s before that",
+               about->argument, given->report, about->argument);
     return wrong_usage(&state, sentence);
   }
   if (given->format != LAVES_FORMAT_AUTO && given->outputs.count > 1) {

@@ -38,6 +38,7 @@ typedef struct settings {
   int word_count;           /* of the command line, behind the command's name */
   char **words;             /* of the command line */
   int job_first, job_after; /* those of them that are --job itself */
+  int auto_after;           /* the one behind which "auto" is understood, or -1 */
   const char *input;        /* NULL where the command takes none */
   option_texts outputs;
   const char *boundary, *json, *surface; /* NULL: not given */
@@ -83,6 +84,7 @@ typedef enum option_kind {
   OPTION_SWITCH,    /* bool: yes or no */
   OPTION_WORD,      /* const char * */
   OPTION_WORDS,     /* option_texts, of `high` at most */
+  OPTION_AUTO,      /* const char *: "auto" where no value follows */
   OPTION_REAL,      /* double */
   OPTION_COUNT,     /* int64_t; 50k, 1.5M */
   OPTION_BYTES,     /* int64_t; 500M, 2G, powers of 1024 */
@@ -146,7 +148,12 @@ void options_release(settings *given);
  * line. *count of them in an array for free(); NULL without memory. */
 const char **options_command(const settings *given, int *count);
 
-/* ---- words that parser and help share ---- */
+/* ---- words that parser, commands and help share ---- */
+
+/* The index of a value in the list of those that there are; else -1 with half a sentence that follows the option's name:
+ * "must be x, y or z, not 'w'", and the nearest of them, if one is near, in `wrong`, of OPTION_SENTENCE_CAPACITY. */
+enum { OPTION_SENTENCE_CAPACITY = 300 };
+int option_choose(const char *text, const char *const *names, int count, char *wrong);
 
 /* "above 0", "0..9", "1 or more"; returns text. */
 const char *option_range(const option *row, char *text, size_t size);

@@ -119,11 +119,11 @@ laves_result outputs_check_text(session *run, const char *path, const char *sour
   return check_target(run, path, source, true);
 }
 
-/* The name without its extension, and ".certificate.json". */
-static bool name_certificate(const char *mesh, char *path, size_t size) {
+/* The mesh's name with another extension, such as ".certificate.json". */
+static bool name_beside(const char *mesh, const char *extension, char *path, size_t size) {
   const char *base = text_base_name(mesh), *dot = strrchr(base, '.');
   const size_t stem = dot && dot != base ? (size_t)(dot - mesh) : strlen(mesh);
-  const int length = snprintf(path, size, "%.*s.certificate.json", (int)stem, mesh);
+  const int length = snprintf(path, size, "%.*s%s", (int)stem, mesh, extension);
   return length > 0 && (size_t)length < size;
 }
 
@@ -138,7 +138,7 @@ laves_result outputs_plan_certificate(session *run, const char *source, outputs 
   }
   const size_t size = sizeof plan->certificate;
   if (asked ? (size_t)snprintf(plan->certificate, size, "%s", asked) >= size
-            : !name_certificate(plan->items[0].path, plan->certificate, size)) {
+            : !name_beside(plan->items[0].path, ".certificate.json", plan->certificate, size)) {
     return session_fail(run, LAVES_ERROR_WRITE, "the name of the certificate is too long");
   }
   for (int i = 0; i < plan->count; ++i) {
@@ -152,10 +152,16 @@ laves_result outputs_plan_certificate(session *run, const char *source, outputs 
   return check_target(run, plan->certificate, source, true);
 }
 
-laves_result outputs_check_report(session *run, const char *source, const outputs *plan) {
-  const char *path = run->given->report;
+laves_result outputs_plan_report(session *run, const char *source, outputs *plan) {
+  const char *asked = run->given->report, *path = plan->report;
+  if (!asked) return LAVES_OK;
   if (run->given->stream)
     return session_fail(run, LAVES_ERROR_OPTION, "a report needs the mesh in memory; leave --report away, or --stream");
+  const size_t size = sizeof plan->report;
+  if (strcmp(asked, "auto") != 0 ? (size_t)snprintf(plan->report, size, "%s", asked) >= size
+                                 : !name_beside(plan->items[0].path, ".html", plan->report, size)) {
+    return session_fail(run, LAVES_ERROR_WRITE, "the name of the report is too long");
+  }
   const laves_result page = outputs_check_page(run, path);
   if (page != LAVES_OK) return page;
   run->json_refused = run->given->json && is_same_place(run->given->json, path); /* it must not take the place of what is there */

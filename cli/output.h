@@ -16,6 +16,7 @@ typedef struct outputs {
   output items[OUTPUT_CAPACITY + 1]; /* room for --boundary behind the --output ones */
   int count;
   char certificate[PATH_CAPACITY]; /* where it goes; empty: none is written */
+  char report[PATH_CAPACITY];      /* the same of the page of --report */
   double certificate_bytes;        /* 0 before it is written */
   double seconds;                  /* to write them */
 } outputs;
@@ -33,8 +34,8 @@ laves_result outputs_check_text(session *run, const char *path, const char *sour
 
 /* The page of a report ends in .html. */
 laves_result outputs_check_page(session *run, const char *path);
-/* Makes sure that the page of --report can be written: it has a name of its own, and the mesh stays in memory. */
-laves_result outputs_check_report(session *run, const char *source, const outputs *plan);
+/* Decides where the page of --report goes, if it is asked for: to a name of its own, while the mesh stays in memory. */
+laves_result outputs_plan_report(session *run, const char *source, outputs *plan);
 
 /* Only the check of --json, for commands without other outputs. */
 laves_result outputs_check_json(session *run, const char *source);

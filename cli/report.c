@@ -21,13 +21,14 @@
 
 static const char data_mark[] = "<!--laves:data-->", sections_mark[] = "<!--laves:sections-->";
 
-static void write_facts(FILE *file, const report_subject *subject, const report_shapes *shapes, const report_parts *parts) {
+static bool write_facts(FILE *file, const report_subject *subject, const report_shapes *shapes, const report_parts *parts) {
   fputs("<script type=\"application/json\" id=\"facts\">", file);
   json out = json_start(file);
   out.in_page = true;
-  report_facts_write(&out, subject, shapes, parts);
+  const bool known = report_facts_write(&out, subject, shapes, parts);
   json_finish(&out);
   fputs("</script>\n", file);
+  return known;
 }
 
 /* False when memory is short or the work is to stop; what cannot be written shows in ferror(). */
@@ -36,7 +37,7 @@ static bool write_page(FILE *file, const report_subject *subject, const report_s
   const char *data = strstr(template, data_mark), *sections = strstr(template, sections_mark);
   if (!data || !sections) return false; /* a test holds the template against it */
   fwrite(template, 1, (size_t)(data - template), file);
-  write_facts(file, subject, shapes, parts);
+  if (!write_facts(file, subject, shapes, parts)) return false;
   if (!report_parts_write(file, subject->mesh, shapes, parts)) return false;
   data += strlen(data_mark);
   fwrite(data, 1, (size_t)(sections - data), file);

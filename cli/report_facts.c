@@ -151,22 +151,32 @@ static void write_thin_places(json *out, const laves_thin_place *places, size_t 
   }
 }
 
-static void write_thin(json *out, const report_subject *subject) {
+/* Walls, or gaps, of the input; false when memory is short. */
+static bool find_thin(json *out, const laves_domain *domain,
+                      size_t (*find)(const laves_domain *domain, laves_thin_place *places, size_t capacity), double limit) {
+  laves_thin_place places[THIN_CAPACITY];
+  const size_t count = find(domain, places, THIN_CAPACITY);
+  write_thin_places(out, places, count, limit, false);
+  return count > 0 || !isnan(places[0].thickness);
+}
+
+static bool write_thin(json *out, const report_subject *subject) {
   const laves_certificate *c = subject->certificate;
   const double size = c->has_options ? c->size : c->lattice_size > 0 ? c->lattice_size : c->check.edge_mean;
-  laves_thin_place places[THIN_CAPACITY];
+  bool known = true;
   json_number(out, "thin_below", thin_sizes * size);
   json_open_array(out, "thin");
   if (subject->making) write_thin_places(out, subject->making->lost, subject->making->lost_count, 0, true);
   if (subject->surface) {
     const laves_domain *domain = subject->surface->domain;
-    write_thin_places(out, places, laves_domain_thin_places(domain, places, THIN_CAPACITY), thin_sizes * size, false);
-    write_thin_places(out, places, laves_domain_gap_places(domain, places, THIN_CAPACITY), thin_sizes * size, false);
+    known = find_thin(out, domain, laves_domain_thin_places, thin_sizes * size) &&
+            find_thin(out, domain, laves_domain_gap_places, thin_sizes * size);
   }
   json_close(out);
+  return known;
 }
 
-void report_facts_write(json *out, const report_subject *subject, const report_shapes *shapes, const report_parts *parts) {
+bool report_facts_write(json *out, const report_subject *subject, const report_shapes *shapes, const report_parts *parts) {
   const laves_mesh *mesh = subject->mesh;
   json_text(out, "program", "laves");
   json_text(out, "version", laves_version());
@@ -185,8 +195,9 @@ void report_facts_write(json *out, const report_subject *subject, const report_s
   write_certificate(out, subject->certificate);
   if (subject->surface && subject->defects && laves_defects_count(subject->defects) > 0)
     write_defects(out, &subject->surface->info, subject->defects);
-  write_thin(out, subject);
+  const bool known = write_thin(out, subject);
   json_open_array(out, "warnings");
   for (int i = 0; subject->making && i < subject->making->warning_count; ++i) json_text(out, NULL, subject->making->warnings[i]);
   json_close(out);
+  return known;
 }

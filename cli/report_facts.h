@@ -6,6 +6,7 @@
 #include "report_parts.h"
 #include "report_shapes.h"
 
-void report_facts_write(json *out, const report_subject *subject, const report_shapes *shapes, const report_parts *parts);
+/* False when memory is short. */
+bool report_facts_write(json *out, const report_subject *subject, const report_shapes *shapes, const report_parts *parts);
 
 #endif

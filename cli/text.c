@@ -1,6 +1,7 @@
 /* Words for people: messages, numbers with units, and what the terminal can show. */
 #include "text.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <langinfo.h>
 #include <math.h>
@@ -136,21 +137,27 @@ static size_t edit_distance(const char *a, const char *b) {
   return table[rows][columns];
 }
 
+/* A change of every letter is no slip, so words of one letter are near to nothing. */
+static size_t most_changes(size_t length) { return (length > 1) + (length > 4) + (length > 8); }
+
 const char *text_nearest(const char *word, const char *const *known, size_t count) {
+  char lower[WORD_CAPACITY];
   const size_t length = strlen(word);
   if (length == 0 || length >= WORD_CAPACITY) return NULL;
-  const char *best = NULL;
-  size_t best_distance = 1 + (length > 3) + (length > 8);
+  for (size_t i = 0; i <= length; ++i) lower[i] = (char)tolower((unsigned char)word[i]);
+  const char *begun = NULL, *best = NULL; /* the shortest that begins with the word; the least changed */
+  size_t best_distance = most_changes(length) + 1;
   for (size_t i = 0; i < count; ++i) {
     if (strlen(known[i]) >= WORD_CAPACITY) continue;
-    if (length >= 3 && strncmp(known[i], word, length) == 0) return known[i];
-    const size_t distance = edit_distance(word, known[i]);
-    if (distance <= best_distance && (!best || distance < best_distance)) {
+    const bool begins = length >= 3 && strncmp(known[i], lower, length) == 0;
+    if (begins && (!begun || strlen(known[i]) < strlen(begun))) begun = known[i];
+    const size_t distance = edit_distance(lower, known[i]);
+    if (distance < best_distance) {
       best = known[i];
       best_distance = distance;
     }
   }
-  return best;
+  return begun ? begun : best;
 }
 
 const char *text_base_name(const char *path) {

@@ -39,7 +39,7 @@ void text_warning(const char *format, ...) __attribute__((format(printf, 1, 2)))
 /* Sends to the standard output what waits for it. False, and errno tells why, when anything written to it was lost. */
 bool text_flush_output(void);
 
-/* The known word that is nearest to a misspelt one, or NULL when none is near. */
+/* The known word, in lower case, that is nearest to a misspelt one, or NULL when none is near. */
 const char *text_nearest(const char *word, const char *const *known, size_t count);
 
 /* The part of a path after the last slash. */

@@ -105,10 +105,12 @@ static laves_result conform(laves__run *r) {
 }
 
 laves_result laves__nothing_resolved(const laves__run *r) {
+  char gaps[160];
+  const bool has_gaps = laves__tell_gaps(r, gaps, sizeof gaps);
   return laves__fail(
       r->error, LAVES_ERROR_INPUT,
-      "nothing of the solid is resolved at size %g (the box around it has a diagonal of %g); choose a smaller size",
-      r->frame.size, box3_diagonal(r->domain->oracle.bounds));
+      "nothing of the solid is resolved at size %g (the box around it has a diagonal of %g); choose a smaller size%s%s",
+      r->frame.size, box3_diagonal(r->domain->oracle.bounds), has_gaps ? "; " : "", gaps);
 }
 
 static laves_result hardly_resolved(const laves__run *r, double share) {

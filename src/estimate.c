@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "background/c15_table.h"
+#include "domain/features.h"
 #include "graded/graded.h"
 #include "options.h"
 
@@ -110,6 +111,18 @@ static laves_result find_frame(estimating *e, const laves_domain *domain, laves_
   return laves__fail(error, LAVES_ERROR_INPUT, "no inside was found: the volume of the solid is %g", e->volume);
 }
 
+/* As the pipeline looks for them where sizes do not vary. */
+static laves_result count_creases(const estimating *e, size_t *count, laves_error *error) {
+  const laves_options *o = e->options;
+  const laves__feature_wish wish = {
+      .angle = o->feature_angle, .tags = o->feature_tags, .drawn = o->features, .size = e->frame.size};
+  laves__features features = {0};
+  const laves_result result = laves__features_find(e->context, e->frame.oracle, &wish, &features, error);
+  *count = features.crease_count;
+  laves__features_free(&features);
+  return result;
+}
+
 laves_result laves_estimate(laves_context *context, const laves_domain *domain, const laves_options *options,
                             laves_expectation *expectation, laves_error *error) {
   estimating e = {.context = context, .options = options};
@@ -126,6 +139,7 @@ laves_result laves_estimate(laves_context *context, const laves_domain *domain, 
     result = laves__wishes_make(context, e.sizes, e.frame.size, &e.wishes, error);
     if (result == LAVES_OK) result = laves__estimate_graded(context, options, &e.wishes, &e.frame, expectation, error);
   }
+  if (result == LAVES_OK && domain->info.kind == LAVES_DOMAIN_SURFACE) result = count_creases(&e, &expectation->creases, error);
   expectation->size = e.frame.size;
   laves__wishes_free(&e.wishes);
   laves__size_free(e.sizes);

@@ -24,6 +24,8 @@ static laves_result choose_frame(laves__run *r) {
   r->frame.size = laves__options_size(r->options, oracle, r->report->volume);
   laves__stage_end(r, "background");
   if (r->frame.size > 0 && isfinite(r->frame.size)) return LAVES_OK;
+  char gaps[160];
+  if (laves__tell_gaps(r, gaps, sizeof gaps)) return laves__fail(r->error, LAVES_ERROR_INPUT, "no inside was found: %s", gaps);
   return laves__fail(r->error, LAVES_ERROR_INPUT, "no inside was found: the volume of the solid is %g", r->report->volume);
 }
 
@@ -149,7 +151,9 @@ laves_result laves_generate(laves_context *context, const laves_domain *domain, 
                   .report = report ? report : &own_report,
                   .error = error,
                   .kept = 1};
+  laves__vec3 place;
   memset(r.report, 0, sizeof *r.report);
+  r.gaps_before = laves__function_gaps(domain, &place);
   *mesh = NULL;
   laves__progress_reset(context);
 

@@ -25,6 +25,15 @@ void laves__stage_end(laves__run *r, const char *name) {
   report->stages[i].cpu_seconds += laves__cpu_seconds() - r->cpu;
 }
 
+bool laves__tell_gaps(const laves__run *r, char *text, size_t size) {
+  laves__vec3 place;
+  const size_t gaps = laves__function_gaps(r->domain, &place) - r->gaps_before;
+  text[0] = '\0';
+  if (gaps > 0)
+    snprintf(text, size, "the function gave no number %zu times, as at (%g, %g, %g)", gaps, place.x, place.y, place.z);
+  return gaps > 0;
+}
+
 void laves__warn(laves__run *r, const char *format, ...) {
   laves_report *report = r->report;
   if (report->warning_count == LAVES_WARNING_CAPACITY) return;

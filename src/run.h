@@ -47,6 +47,7 @@ typedef struct laves__run {
   size_t distant;                    /* places still further away than asked */
   laves__vec3 distant_place;         /* the furthest of them */
   bool rough;                        /* the solid is rougher than the size */
+  size_t gaps_before;                /* values of the caller's function that were no numbers, before this run */
   laves__region_counts regions;
   double wall, cpu; /* at the start of the stage under way */
 } laves__run;
@@ -56,6 +57,9 @@ typedef struct laves__run {
 /* Stages are timed between these two; the second adds to the line of that name in the report. */
 void laves__stage_begin(laves__run *r);
 void laves__stage_end(laves__run *r, const char *name);
+/* Half a sentence: how often in this run the caller's function gave what is no number, and where. False where it never did, and
+ * then text is empty. */
+bool laves__tell_gaps(const laves__run *r, char *text, size_t size);
 /* Adds a sentence to the report, while there is room. */
 void laves__warn(laves__run *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

@@ -83,6 +83,41 @@ static laves_result judge_thin(laves__run *r, const laves_mesh *mesh) {
   return result;
 }
 
+/* By how much a point lies beyond the box of the domain, along one axis. */
+static double beyond_bounds(const laves_domain_info *info, laves__vec3 point) {
+  const double at[3] = {point.x, point.y, point.z};
+  double most = 0;
+  for (int k = 0; k < 3; k++) most = fmax(most, fmax(info->lower[k] - at[k], at[k] - info->upper[k]));
+  return most;
+}
+
+/* A function's solid is followed beyond its box as far as the background goes, and what does not hang together with the rest is
+ * not found there. */
+static void warn_of_bounds(laves__run *r) {
+  static const double slack = 1e-6; /* in diagonals: bounds that are typed with seven digits */
+  const double least = slack * box3_diagonal(r->domain->oracle.bounds);
+  double most = least;
+  laves__vec3 place = {0};
+  for (size_t v = 0; v < r->layer.vertex_count; v++) {
+    if (r->layer.depth[v] != 0 || r->layer.off_surface[v] || r->layer.star[v].count == 0) continue;
+    const laves__vec3 point = laves__frame_to_input(&r->frame, r->layer.position[v]);
+    const double beyond = beyond_bounds(&r->domain->info, point);
+    if (beyond <= most) continue;
+    most = beyond;
+    place = point;
+  }
+  if (most > least)
+    laves__warn(r,
+                "the solid reaches beyond its bounds, by %g near (%g, %g, %g), and parts of it may be missing; give bounds that "
+                "contain it",
+                most, place.x, place.y, place.z);
+}
+
+static void warn_of_gaps(laves__run *r) {
+  char gaps[160];
+  if (laves__tell_gaps(r, gaps, sizeof gaps)) laves__warn(r, "%s, which counts as outside", gaps);
+}
+
 /* The last word on targets: what was asked and is not there. */
 laves_result laves__judge(laves__run *r, const laves_mesh *mesh) {
   const laves_options *o = r->options;
@@ -123,6 +158,10 @@ laves_result laves__judge(laves__run *r, const laves_mesh *mesh) {
                 "min_size may help",
                 r->distant, o->max_distance, r->distant_place.x, r->distant_place.y, r->distant_place.z);
   judge_parts(r, mesh);
+  if (r->domain->info.kind == LAVES_DOMAIN_FUNCTION) {
+    warn_of_bounds(r);
+    warn_of_gaps(r);
+  }
   const double wished = o->tet_target ? (double)o->tet_target : (double)o->vertex_target;
   const double got = o->tet_target ? (double)mesh->tet_count : (double)mesh->vertex_count;
   if (wished > 0 && fabs(got / wished - 1) > 0.03) {

@@ -173,11 +173,13 @@ LAVES_API laves_result laves_domain_from_triangles_with(laves_context *context, 
 
 /// A solid given by a function of the caller's.
 typedef struct laves_function {
-  /// values[i] = phi(points[3i..3i+2]) for i < count: negative inside, zero on the surface, positive outside; finite.
+  /// values[i] = phi(points[3i..3i+2]) for i < count: negative inside, zero on the surface, positive outside. What is no number
+  /// counts as outside; laves_report.warnings then has how many and where.
   /// Called from several threads at once, with counts of one to some hundred: as many as can be asked for at a time.
   void (*evaluate)(void *user, const double *points, size_t count, double *values);
   void *user;
-  double lower[3], upper[3];  ///< a box that contains the solid with a little room
+  double lower[3], upper[3];  ///< a box that contains the solid with a little room; where it does not, and the solid is followed
+                              ///< beyond it, laves_report.warnings says so, or laves_generate() refuses it
   /// |phi(a) - phi(b)| <= lipschitz * |a - b|, which lets far regions be skipped; 0: unknown, everything is evaluated
   double lipschitz;
 } laves_function;
@@ -284,7 +286,9 @@ typedef struct laves_thin_place {
 /// Finds the thinnest parts of a surface by chords shot inwards from the surface at a fixed set of samples.
 /// @param places    out: laves_thin_place[capacity], thinnest first, places at least twice their thickness apart
 /// @param capacity  how many places at most
-/// @return how many were found; 0 for domains that are not surfaces
+/// @return how many were found. 0: none, or the domain is no surface, and places[0].thickness is INFINITY; or memory was short,
+/// and
+///         it is NAN. (With a capacity of 0 nothing is told.)
 LAVES_API size_t laves_domain_thin_places(const laves_domain *domain, laves_thin_place *places, size_t capacity);
 /// The same for the narrowest gaps, by chords shot outwards.
 LAVES_API size_t laves_domain_gap_places(const laves_domain *domain, laves_thin_place *places, size_t capacity);
@@ -500,7 +504,9 @@ typedef struct laves_expectation {
   double vertices;    ///< the same; up to a quarter too few where most of the mesh is near the surface
   double peak_bytes;  ///< most memory that laves_generate() will make the context hold, with what it holds now; within a quarter
   double certify_bytes;  ///< the same of laves_certify() and laves_mesh_write(), rough: up to twice as much where implicit solids
-                         ///< have creases
+                         ///< have creases, three times where their walls are a few sizes thin
+  size_t creases;        ///< of a surface, that are to be kept, about as laves_report.creases; 0 for other solids, whose creases
+                         ///< take long to find
 } laves_expectation;
 
 /// Estimates the counts and the memory of a mesh, with all that makes sizes vary. What is over the context's memory limit is told

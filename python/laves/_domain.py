@@ -1,5 +1,6 @@
 """Solids: what is to be meshed, whatever it is made of."""
 import ctypes
+import math
 import os
 import threading
 import typing
@@ -194,7 +195,10 @@ class Domain:
 
     def _places(self, function, count):
         places = (_header.laves_thin_place * count)()
-        return [Place(p) for p in places[:function(self.handle.pointer, places, count)]]
+        found = function(self.handle.pointer, places, count)
+        if found == 0 and count > 0 and math.isnan(places[0].thickness):
+            raise errors.OutOfMemoryError("there is no memory to look for thin places")
+        return [Place(p) for p in places[:found]]
 
     def thin_places(self, count: int = 16) -> "list[Place]":
         """The thinnest walls of a surface, thinnest first: `place` (3,), `thickness`, `kind`. Empty for what is no surface."""

@@ -374,6 +374,7 @@ class laves_expectation(Structure):
         ("vertices", c_double),
         ("peak_bytes", c_double),
         ("certify_bytes", c_double),
+        ("creases", c_size_t),
     ]
 
 

@@ -257,10 +257,11 @@ static void list_off_surface(const listing *l) {
   }
 }
 
-static void list_thin(const listing *l) {
+static laves_result list_thin(const listing *l, laves_error *error) {
   laves_thin_place places[LAVES_PLACE_CAPACITY];
-  if (!l->domain || !(l->c->distance_asked > 0)) return;
+  if (!l->domain || !(l->c->distance_asked > 0)) return LAVES_OK;
   const size_t found = laves_domain_thin_places(l->domain, places, LAVES_PLACE_CAPACITY);
+  if (found == 0 && isnan(places[0].thickness)) return laves__fail_memory(l->context, error);
   for (size_t i = 0; i < found && i < LAVES_PLACE_CAPACITY; i++) {
     const laves__vec3 place = v3(places[i].place[0], places[i].place[1], places[i].place[2]);
     const double size = size_at(l, place);
@@ -268,6 +269,7 @@ static void list_thin(const listing *l) {
     add(l, LAVES_EXCEPTION_THIN, place, places[i].thickness, size, -1, curvature_at(l, place));
     l->c->exception_counts[LAVES_EXCEPTION_THIN]++;
   }
+  return LAVES_OK;
 }
 
 /* ---- features ---- */
@@ -330,7 +332,7 @@ laves_result laves__list_exceptions(laves_context *context, const laves_mesh *me
   if (result == LAVES_OK) result = list_distant(&l, error);
   if (result != LAVES_OK) return result;
   list_off_surface(&l);
-  list_thin(&l);
-  list_features(&l);
-  return LAVES_OK;
+  result = list_thin(&l, error);
+  if (result == LAVES_OK) list_features(&l);
+  return result;
 }

@@ -219,6 +219,7 @@ const char *laves_domain_tag_name(const laves_domain *domain, int index) {
 
 static size_t places_of_kind(const laves_domain *domain, laves_thin_kind kind, laves_thin_place *places, size_t capacity) {
   const laves__oracle *oracle = &domain->oracle;
+  if (capacity > 0) places[0] = (laves_thin_place){.thickness = INFINITY, .kind = kind}; /* when none is found */
   if (!oracle->thin_places) return 0;
   const size_t count = oracle->thin_places(oracle->self, kind, places, capacity);
   for (size_t i = 0; i < count; i++) {

@@ -2,15 +2,16 @@
  *
  * In: a batched callback, a box, perhaps a Lipschitz constant.  Out: an oracle.
  *
- * Nothing is known of the function but its values. A value that is not a number counts as outside. `project` takes Newton steps
- * along the gradient, found by central differences; as soon as two points with different signs are known it halves the stretch
- * between them, so that it ends on the surface however the function bends. With a Lipschitz constant L, |phi| > L r says that the
- * ball of radius r holds no surface; without one every ball inside the box is undecided.
+ * Nothing is known of the function but its values. A value that is not a number counts as outside, and is counted. `project`
+ * takes Newton steps along the gradient, found by central differences; as soon as two points with different signs are known it
+ * halves the stretch between them, so that it ends on the surface however the function bends. With a Lipschitz constant L, |phi|
+ * > L r says that the ball of radius r holds no surface; without one every ball inside the box is undecided.
  *
  * A call of the callback may cost far more than what it computes, as where it is an interpreter's. So all points that are
  * projected go their ways in step: each says where it must know phi next, the callback is asked for all of them at once, and each
  * goes on with its answer. No way depends on another. A way that goes alone asks for the
  * gradient along with the value, as it is likely to be wanted next. */
+#include <stdatomic.h>
 #include <string.h>
 
 #include "domain/oracle.h"
@@ -27,12 +28,54 @@ static const double side_margin = 1e-9;
 
 enum { NEWTON_MAX = 30, BISECTION_MAX = 60, SEARCH_STEPS = 16, BATCH = 512, WAYS = 256, SLOPE_POINTS = 6 };
 
+/* Values that are no numbers. Shared by all threads, so written behind the lock only. */
+typedef struct gaps {
+  atomic_flag lock;
+  size_t count;
+  laves__vec3 place; /* the least, so that it does not depend on the threads */
+} gaps;
+
 typedef struct solid {
+  gaps *gaps;
   laves_function function;
   laves__vec3 origin;
   laves__box3 bounds; /* local */
   double diagonal;
 } solid;
+
+static bool is_less(laves__vec3 a, laves__vec3 b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; }
+
+static void lock_gaps(gaps *g) {
+  while (atomic_flag_test_and_set_explicit(&g->lock, memory_order_acquire)) {
+  }
+}
+
+static void unlock_gaps(gaps *g) { atomic_flag_clear_explicit(&g->lock, memory_order_release); }
+
+/* The values with numbers far outside for what is none. */
+static void fill_gaps(const solid *s, size_t count, const laves__vec3 *input, double *phi) {
+  size_t found = 0, least = 0;
+  for (size_t i = 0; i < count; i++) {
+    if (!isnan(phi[i])) continue;
+    phi[i] = s->diagonal;
+    if (found++ == 0 || is_less(input[i], input[least])) least = i;
+  }
+  if (found == 0) return;
+  lock_gaps(s->gaps);
+  if (s->gaps->count == 0 || is_less(input[least], s->gaps->place)) s->gaps->place = input[least];
+  s->gaps->count += found;
+  unlock_gaps(s->gaps);
+}
+
+size_t laves__function_gaps(const laves_domain *domain, laves__vec3 *place) {
+  const solid *s = domain->oracle.self;
+  if (domain->info.kind != LAVES_DOMAIN_FUNCTION) return 0;
+  lock_gaps(s->gaps);
+  const size_t count = s->gaps->count;
+  *place = s->gaps->place;
+  unlock_gaps(s->gaps);
+  return count;
+}
 
 static void evaluate(const void *self, size_t count, const laves__vec3 *points, double *phi, uint32_t *hints) {
   const solid *s = self;
@@ -41,10 +84,8 @@ static void evaluate(const void *self, size_t count, const laves__vec3 *points, 
     const size_t size = count - begin < BATCH ? count - begin : BATCH;
     for (size_t i = 0; i < size; i++) input[i] = v3_add(points[begin + i], s->origin);
     s->function.evaluate(s->function.user, &input[0].x, size, phi + begin);
-    for (size_t i = begin; i < begin + size; i++) {
-      if (isnan(phi[i])) phi[i] = s->diagonal;
-      if (hints) hints[i] = LAVES__NO_HINT;
-    }
+    fill_gaps(s, size, input, phi + begin);
+    for (size_t i = begin; hints && i < begin + size; i++) hints[i] = LAVES__NO_HINT;
   }
 }
 
@@ -393,7 +434,11 @@ static laves__side side(const void *self, laves__vec3 centre, double radius, lav
   return phi < 0 ? LAVES__INSIDE : LAVES__OUTSIDE;
 }
 
-static void solid_free(laves_context *context, void *self) { laves__free(context, self, 1, sizeof(solid)); }
+static void solid_free(laves_context *context, void *self) {
+  solid *s = self;
+  laves__free(context, s->gaps, 1, sizeof *s->gaps);
+  laves__free(context, s, 1, sizeof *s);
+}
 
 static bool box_is_good(const laves_function *f) {
   for (int k = 0; k < 3; k++)
@@ -410,7 +455,12 @@ laves_result laves__function_build(laves_context *context, const laves_function 
   if (!(function->lipschitz >= 0) || !isfinite(function->lipschitz))
     return laves__fail(error, LAVES_ERROR_OPTION, "the Lipschitz constant %g must be finite and at least 0", function->lipschitz);
   solid *s = laves__alloc_zeroed(context, 1, sizeof *s);
-  if (!s) return laves__fail_memory(context, error);
+  if (s) s->gaps = laves__alloc_zeroed(context, 1, sizeof *s->gaps);
+  if (!s || !s->gaps) {
+    laves__free(context, s, 1, sizeof *s);
+    return laves__fail_memory(context, error);
+  }
+  unlock_gaps(s->gaps);
   const laves__box3 box = {v3(function->lower[0], function->lower[1], function->lower[2]),
                            v3(function->upper[0], function->upper[1], function->upper[2])};
   s->function = *function;

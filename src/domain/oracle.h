@@ -75,7 +75,8 @@ typedef struct laves__oracle {
   /* Where the surface is made of triangles, whether or not all of them bound the solid: they; see surface.h. Else NULL. */
   const struct laves__surface *surface;
 
-  /* Up to `capacity` thin walls or gaps, thinnest first; NULL: not available. */
+  /* Up to `capacity` thin walls or gaps, thinnest first; without memory none, and places[0].thickness is NAN. NULL: not
+   * available. */
   size_t (*thin_places)(const void *self, laves_thin_kind kind, laves_thin_place *places, size_t capacity);
 
   /* Patches, and segments of creases, as features.h tells; NULL: the surface is one smooth patch as far as is known.
@@ -122,5 +123,8 @@ laves_result laves__implicit_build(laves_context *context, const char *text, siz
 
 laves_result laves__function_build(laves_context *context, const laves_function *function, laves_domain *domain,
                                    laves_error *error);
+/* How many values of a caller's function were no numbers since it became a domain, and the least of the places by x, y and z, in
+ * input coordinates. 0 for domains of other kinds. */
+size_t laves__function_gaps(const laves_domain *domain, laves__vec3 *place);
 
 #endif

@@ -122,6 +122,8 @@ size_t laves__surface_thin_places(const void *self, laves_thin_kind kind, laves_
     }
     qsort(all, count, sizeof *all, compare_places);
     picked = pick(all, count, places, capacity);
+  } else if (capacity > 0) {
+    places[0].thickness = NAN;
   }
   laves__free(s->context, samples, THIN_SAMPLES, sizeof *samples);
   laves__free(s->context, all, THIN_SAMPLES, sizeof *all);

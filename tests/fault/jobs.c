@@ -273,6 +273,22 @@ static laves_result estimate_one(laves_context *context, const laves_domain *dom
   return result;
 }
 
+static laves_result find_thin(laves_context *context, const job_place *place, const char *what, job_outcome *out) {
+  laves_domain *domain = NULL;
+  laves_thin_place places[4];
+  laves_result result = open_domain(context, place, what, &domain, &out->error);
+  if (result == LAVES_OK) {
+    const size_t count = laves_domain_thin_places(domain, places, 4);
+    for (size_t i = 0; i < count; i++) take_number(out, places[i].thickness);
+    if (count == 0 && isnan(places[0].thickness)) {
+      result = out->error.result = LAVES_ERROR_MEMORY;
+      snprintf(out->error.text, sizeof out->error.text, "memory is short");
+    }
+  }
+  laves_domain_free(domain);
+  return result;
+}
+
 static laves_result estimate(laves_context *context, const job_place *place, const char *what, job_outcome *out) {
   return with_sizing(context, place, what, estimate_one, out);
 }
@@ -573,6 +589,7 @@ const job jobs[] = {
     {"improve", improve, "bad.inp"},
     {"improve with regions and tags", improve, "tagged.vtu"},
     {"estimate", estimate, "cube.obj"},
+    {"find thin places", find_thin, "cube.obj"},
     {"check a mesh", check_mesh, ""},
     {"check a file", check_file, "cube.vtu"},
     {"check a file with triangles", check_file, "tagged.vtu"},

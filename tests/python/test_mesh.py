@@ -198,6 +198,19 @@ class Options(unittest.TestCase):
         with self.assertRaises(laves.OptionError):
             laves.mesh("sphere(1)", align=np.eye(2))
 
+    def test_functions_are_warned_of(self):
+        def ball(p):
+            return np.linalg.norm(p, axis=1) - 1
+
+        def half_known(p):
+            return np.where(p[:, 0] > 0.5, np.nan, ball(p))
+
+        self.assertEqual(laves.mesh(ball, bounds=([-1] * 3, [1] * 3), size=0.2).report.warnings, [])
+        said = laves.mesh(ball, bounds=([-1] * 3, [1, 1, 0.8]), size=0.2).report.warnings
+        self.assertTrue(any("reaches beyond its bounds" in sentence for sentence in said), said)
+        said = laves.mesh(half_known, bounds=([-1.2] * 3, [1.2] * 3), size=0.2).report.warnings
+        self.assertTrue(any("gave no number" in sentence for sentence in said), said)
+
     def test_estimate(self):
         expected = laves.estimate("sphere(1)", size=0.05)
         self.assertAlmostEqual(expected.tets / laves.mesh("sphere(1)", size=0.05).tet_count, 1, delta=0.05)

@@ -70,6 +70,7 @@ CASES = [
     (["laves", "mesh", "shape.stl", "--close-holes", "n"], ["no"], ["yes"]),
     (["laves", "mesh", "shape.stl", "--format", "vt"], ["vtu"], ["medit"]),
     (["laves", "mesh", "shape.stl", "--features", ""], ["auto", "none", "shape.stl"], []),
+    (["laves", "mesh", "shape.stl", "--report", ""], ["auto", "shape.stl"], []),
     (["laves", "mesh", "shape.stl", "--size", ""], [], ["shape.stl", "--tets"]),
     (["laves", "view", "shape.stl", "--b"], ["--background"], ["--boundary"]),
     (["laves", "help", "--completion", ""], ["bash", "zsh", "fish"], ["mesh"]),

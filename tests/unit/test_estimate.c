@@ -53,6 +53,28 @@ static void uniform(void **state) {
   drop(&m);
 }
 
+/* Of surfaces, as many as the mesh is made with; others are not searched. */
+static void creases_of_surfaces(void **state) {
+  (void)state;
+  static const double points[] = {0, 0, 0, 3, 0, 0, 0, 3, 0, 0, 0, 3};
+  static const uint32_t faces[] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
+  made m = of_expression("box(1, 1, 1)");
+  laves_expectation expected;
+  laves_report report;
+  laves_mesh *mesh;
+  m.options.size = 0.3;
+  assert_int_equal(laves_estimate(m.context, m.domain, &m.options, &expected, NULL), LAVES_OK);
+  assert_int_equal(expected.creases, 0);
+  laves_domain_free(m.domain);
+  assert_int_equal(laves_domain_from_triangles(m.context, points, 4, faces, 4, NULL, &m.domain, NULL), LAVES_OK);
+  assert_int_equal(laves_estimate(m.context, m.domain, &m.options, &expected, NULL), LAVES_OK);
+  assert_int_equal(expected.creases, 6);
+  assert_int_equal(laves_generate(m.context, m.domain, &m.options, &mesh, &report, NULL), LAVES_OK);
+  assert_int_equal(expected.creases, report.creases);
+  laves_mesh_free(mesh);
+  drop(&m);
+}
+
 static void growing_inside(void **state) {
   (void)state;
   made m = of_expression("sphere(1)");
@@ -127,6 +149,7 @@ static void mistakes_are_told(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(uniform),
+      cmocka_unit_test(creases_of_surfaces),
       cmocka_unit_test(growing_inside),
       cmocka_unit_test(by_expression),
       cmocka_unit_test(targets_are_met),

@@ -171,6 +171,88 @@ static void bad_descriptions_are_refused(void **unused) {
   laves_context_free(context);
 }
 
+/* Whether a warning of the report holds the text. */
+static bool warns(const laves_report *report, const char *text) {
+  for (int i = 0; i < report->warning_count; i++)
+    if (strstr(report->warnings[i], text)) return true;
+  return false;
+}
+
+static laves_result mesh(laves_context *context, const laves_function *function, double growth, laves_report *report,
+                         laves_error *error) {
+  laves_domain *domain = NULL;
+  laves_mesh *made;
+  laves_options options = laves_options_default();
+  options.size = 0.2;
+  options.interior_growth = growth;
+  if (laves_domain_from_function(context, function, &domain, error)) fail_msg("%s", error->text);
+  const laves_result result = laves_generate(context, domain, &options, &made, report, error);
+  laves_mesh_free(made);
+  laves_domain_free(domain);
+  return result;
+}
+
+/* A box that touches the solid is right; one that cuts it is told, whether the solid is followed to its end or not. */
+static void solids_beyond_the_box_are_told(void **unused) {
+  (void)unused;
+  laves_context *context = laves_context_create(NULL);
+  double radius = 1;
+  laves_report report;
+  laves_error error;
+  laves_function f = {ball, &radius, {2, -1, -1}, {4, 1, 1}, 1};
+  assert_int_equal(mesh(context, &f, 0, &report, &error), LAVES_OK);
+  assert_int_equal(report.warning_count, 0);
+  f.upper[2] = 0.9;
+  for (int graded = 0; graded < 2; graded++) {
+    assert_int_equal(mesh(context, &f, 0.3 * graded, &report, &error), LAVES_OK);
+    assert_true(warns(&report, "the solid reaches beyond its bounds, by 0."));
+  }
+  f.upper[2] = -0.8;
+  assert_int_equal(mesh(context, &f, 0, &report, &error), LAVES_ERROR_INPUT);
+  assert_non_null(strstr(error.text, "the solid reaches beyond its bounds"));
+  laves_context_free(context);
+}
+
+/* No number beyond x = 3.5. */
+static void half_known_ball(void *user, const double *points, size_t count, double *values) {
+  ball(user, points, count, values);
+  for (size_t i = 0; i < count; i++)
+    if (points[3 * i] > 3.5) values[i] = NAN;
+}
+
+static void unknown(void *user, const double *points, size_t count, double *values) {
+  (void)user;
+  (void)points;
+  for (size_t i = 0; i < count; i++) values[i] = NAN;
+}
+
+/* The sentence is the same for any number of threads. */
+static void what_is_no_number_is_told(void **unused) {
+  (void)unused;
+  double radius = 1;
+  laves_report report[2];
+  laves_error error;
+  laves_function f = {half_known_ball, &radius, {1.8, -1.2, -1.2}, {4.2, 1.2, 1.2}, 0};
+  for (int i = 0; i < 2; i++) {
+    laves_context_options options = laves_context_options_default();
+    options.thread_count = 1 + 3 * i;
+    laves_context *context = laves_context_create(&options);
+    assert_int_equal(mesh(context, &f, 0, &report[i], &error), LAVES_OK);
+    assert_true(warns(&report[i], "the function gave no number "));
+    laves_context_free(context);
+  }
+  assert_int_equal(report[0].warning_count, report[1].warning_count);
+  assert_memory_equal(report[0].warnings, report[1].warnings, sizeof report[0].warnings);
+  laves_context *context = laves_context_create(NULL);
+  f.evaluate = unknown;
+  assert_int_equal(mesh(context, &f, 0, report, &error), LAVES_ERROR_INPUT);
+  assert_non_null(strstr(error.text, "; the function gave no number "));
+  f.evaluate = ball;
+  assert_int_equal(mesh(context, &f, 0, report, &error), LAVES_OK);
+  assert_int_equal(report->warning_count, 0);
+  laves_context_free(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(projects_onto_the_zero_set),
@@ -178,6 +260,8 @@ int main(void) {
       cmocka_unit_test(reach_is_kept),
       cmocka_unit_test(sides_follow_the_lipschitz_constant),
       cmocka_unit_test(what_is_no_number_is_outside),
+      cmocka_unit_test(solids_beyond_the_box_are_told),
+      cmocka_unit_test(what_is_no_number_is_told),
       cmocka_unit_test(bad_descriptions_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

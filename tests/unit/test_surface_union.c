@@ -186,6 +186,20 @@ static void samples_lie_on_the_surface(void **unused) {
   laves_context_free(context);
 }
 
+/* None are told apart from those that could not be looked for: see laves.h. */
+static void no_thin_places(void **unused) {
+  (void)unused;
+  laves_context *context = laves_context_create(NULL);
+  laves_domain *domain = NULL;
+  laves_thin_place place = {.thickness = 3};
+  assert_int_equal(laves_domain_from_expression(context, "sphere(1)", &domain, NULL), LAVES_OK);
+  assert_int_equal(laves_domain_thin_places(domain, &place, 1), 0);
+  assert_true(isinf(place.thickness));
+  assert_int_equal(laves_domain_gap_places(domain, NULL, 0), 0);
+  laves_domain_free(domain);
+  laves_context_free(context);
+}
+
 static void thin_places_of_a_plate(void **unused) {
   (void)unused;
   laves_context *context = laves_context_create(NULL);
@@ -256,6 +270,7 @@ int main(void) {
       cmocka_unit_test(a_part_inside_out_is_turned),
       cmocka_unit_test(boxes_that_share_an_edge),
       cmocka_unit_test(samples_lie_on_the_surface),
+      cmocka_unit_test(no_thin_places),
       cmocka_unit_test(thin_places_of_a_plate),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
