@@ -1,7 +1,7 @@
 /* Meshes one solid and prints what the benchmark needs to know about it as one line of JSON.
  *
- *   measure INPUT TETS [--size H] [--method HOW] [--window LO,HI] [--threads N] [--repeat N] [--judge] [--distance] [--write
- * FILE]
+ *   measure INPUT TETS [--size H] [--method HOW] [--window LO,HI] [--no-features] [--threads N] [--repeat N]
+ *           [--judge] [--distance] [--write FILE]
  *
  * INPUT: a surface, a script, noise:KIND:SEED:SCALE (tests/fixtures/noise.h), or else an expression; TETS: how many are wished,
  * unless a size is given. Seconds, of CPU those of the whole process, are told
@@ -33,8 +33,8 @@ static const window windows[] = {{"outside", 40, 125, 0.6}, {"goal", 41, 122.5, 
 static const double distance_in_sizes = 0.3;
 
 static const char how_to_use[] =
-    "measure INPUT TETS [--size H] [--method HOW] [--window LO,HI] [--threads N] [--repeat N] [--judge] [--distance] "
-    "[--write FILE]\n";
+    "measure INPUT TETS [--size H] [--method HOW] [--window LO,HI] [--no-features] [--threads N] [--repeat N] [--judge] "
+    "[--distance] [--write FILE]\n";
 
 typedef struct request {
   const char *input, *output;
@@ -43,7 +43,7 @@ typedef struct request {
   double window[2]; /* asked; 0: the default */
   laves_method method;
   int threads, repeat;
-  bool judge, distance;
+  bool judge, distance, no_features;
 } request;
 
 /* Seconds of each run. */
@@ -230,6 +230,7 @@ static laves_result read_input(run *r, const char *input) {
 
 static laves_result mesh_once(const request *q, run *r, times *t, int turn) {
   laves_options options = laves_options_default();
+  if (q->no_features) options.feature_angle = 0;
   laves_write_options files = laves_write_options_default();
   if (q->size > 0)
     options.size = q->size;
@@ -309,6 +310,8 @@ static bool parse(int count, char **words, request *q) {
       q->judge = true;
     else if (strcmp(words[i], "--distance") == 0)
       q->distance = true;
+    else if (strcmp(words[i], "--no-features") == 0)
+      q->no_features = true;
     else if (strcmp(words[i], "--size") == 0 && more)
       q->size = atof(words[++i]);
     else if (strcmp(words[i], "--method") == 0 && more && parse_method(words[i + 1], &q->method))
