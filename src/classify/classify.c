@@ -309,11 +309,28 @@ typedef struct neighbourhood {
   int32_t cell[WITH_RIM][WITH_RIM][WITH_RIM]; /* z, y, x */
 } neighbourhood;
 
-static void look_around(const laves__lattice *l, const int32_t first[3], neighbourhood *n) {
-  for (int z = 0; z < WITH_RIM; z++)
-    for (int y = 0; y < WITH_RIM; y++)
-      for (int x = 0; x < WITH_RIM; x++)
-        n->cell[z][y][x] = laves__lattice_cell(l, first[0] + x - RIM, first[1] + y - RIM, first[2] + z - RIM);
+/* The cells of one brick that lie in the neighbourhood of brick b; `step` leads from b to it. */
+static void look_into(const laves__lattice *l, const int32_t b[3], const int step[3], neighbourhood *n) {
+  enum { SIDE = LAVES__BRICK_SIDE };
+  int first[3], end[3]; /* in the neighbourhood */
+  bool exists = true;
+  for (int axis = 0; axis < 3; axis++) {
+    first[axis] = step[axis] < 0 ? 0 : RIM + step[axis] * SIDE;
+    end[axis] = step[axis] < 0 ? RIM : step[axis] > 0 ? WITH_RIM : RIM + SIDE;
+    exists &= b[axis] + step[axis] >= 0 && b[axis] + step[axis] < l->bricks[axis];
+  }
+  const int32_t entry =
+      exists ? l->directory[slot_of(l, (int32_t[3]){b[0] + step[0], b[1] + step[1], b[2] + step[2]})] : LAVES__OUT;
+  for (int z = first[2]; z < end[2]; z++)
+    for (int y = first[1]; y < end[1]; y++)
+      for (int x = first[0]; x < end[0]; x++) {
+        const int inside = (x - RIM - step[0] * SIDE) + SIDE * ((y - RIM - step[1] * SIDE) + SIDE * (z - RIM - step[2] * SIDE));
+        n->cell[z][y][x] = entry < 0 ? entry : l->brick[entry].cell[inside];
+      }
+}
+
+static void look_around(const laves__lattice *l, const int32_t b[3], neighbourhood *n) {
+  for (int k = 0; k < 27; k++) look_into(l, b, (int[3]){k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1}, n);
 }
 
 /* Whether a cell of the brick is inside and touches one outside. */
@@ -325,15 +342,17 @@ static bool is_unsealed(const neighbourhood *n, const int at[3]) {
 }
 
 /* Looked up once for all cells of the brick, and again after a change, which is rare. */
-static bool seal_brick(laves__lattice *l, const int32_t first[3]) {
+static bool seal_brick(laves__lattice *l, const int32_t b[3]) {
   neighbourhood n;
-  look_around(l, first, &n);
+  look_around(l, b, &n);
   for (int inside = 0; inside < LAVES__BRICK_CELLS; inside++) {
     const int at[3] = {inside % LAVES__BRICK_SIDE, inside / LAVES__BRICK_SIDE % LAVES__BRICK_SIDE,
                        inside / (LAVES__BRICK_SIDE * LAVES__BRICK_SIDE)};
     if (!is_unsealed(&n, at)) continue;
-    if (!seal_cell(l, first[0] + at[0], first[1] + at[1], first[2] + at[2])) return false;
-    look_around(l, first, &n);
+    int32_t cell[3];
+    for (int axis = 0; axis < 3; axis++) cell[axis] = l->lower[axis] + b[axis] * LAVES__BRICK_SIDE + at[axis];
+    if (!seal_cell(l, cell[0], cell[1], cell[2])) return false;
+    look_around(l, b, &n);
   }
   return true;
 }
@@ -346,14 +365,13 @@ static bool seal_cells(laves__lattice *l) {
       for (int32_t bx = 0; bx < l->bricks[0]; bx++) {
         const int32_t b[3] = {bx, by, bz};
         if (l->directory[slot_of(l, b)] == LAVES__OUT || is_deep_brick(l, b)) continue;
-        const int32_t first[3] = {l->lower[0] + bx * LAVES__BRICK_SIDE, l->lower[1] + by * LAVES__BRICK_SIDE,
-                                  l->lower[2] + bz * LAVES__BRICK_SIDE};
-        if (!seal_brick(l, first)) return false;
+        if (!seal_brick(l, b)) return false;
       }
   return true;
 }
 
-/* Likewise, no tet around a site may belong to a cell without a record that lies on the other side. */
+/* Likewise, no tet around a site may belong to a cell without a record that lies on the other side. (One that has got a record since
+ * the cells were linked is not given a second one.) */
 static bool seal_owners(laves__lattice *l, size_t index) {
   const int32_t at[3] = {l->record[index].xyz[0], l->record[index].xyz[1], l->record[index].xyz[2]};
   for (int site = 0; site < LAVES__C15_SITES; site++)
@@ -361,8 +379,7 @@ static bool seal_owners(laves__lattice *l, size_t index) {
       const int cell = laves__c15_star[site][k].cell;
       const int32_t n[3] = {at[0] + cell % 3 - 1, at[1] + cell / 3 % 3 - 1, at[2] + cell / 9 - 1};
       const int32_t beyond = l->record[index].sign[site] < 0 ? LAVES__OUT : LAVES__IN;
-      if (laves__lattice_cell(l, n[0], n[1], n[2]) == beyond && is_in_directory(l, n) &&
-          laves__lattice_add_record(l, n[0], n[1], n[2]) < 0)
+      if (l->record[index].around[cell] == beyond && is_in_directory(l, n) && laves__lattice_add_record(l, n[0], n[1], n[2]) < 0)
         return false;
     }
   return true;
