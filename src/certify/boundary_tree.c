@@ -288,6 +288,13 @@ typedef struct step {
   double distance2;
 } step;
 
+/* The latest node on the stack that is near enough; 0 when there is none. */
+static size_t take_next(const step *stack, int *depth, double best) {
+  while (*depth > 0)
+    if (stack[--*depth].distance2 < best) return stack[*depth].node;
+  return 0;
+}
+
 /* A bound, from wherever it is, only leaves boxes out: the order in which the others are seen, and so which of several triangles
  * as near is the one, stays the same. */
 double laves__boundary_tree_distance(const laves__boundary_tree *tree, laves__vec3 point, double bound, float *edge,
@@ -301,21 +308,16 @@ double laves__boundary_tree_distance(const laves__boundary_tree *tree, laves__ve
     if (known > 0 && known < best) best = known; /* nothing is below zero */
   }
   best *= 1 + BOUND_SLACK;
-  stack[depth++] = (step){1, 0};
-  while (depth > 0) {
-    const size_t node = stack[--depth].node;
-    if (stack[depth].distance2 >= best) continue;
-    if (node >= tree->leaf_count) {
-      best = leaf_nearest2(tree, node - tree->leaf_count, point, best, edge, near);
-      continue;
+  for (size_t node = 1; node != 0; node = take_next(stack, &depth, best)) {
+    while (node != 0 && node < tree->leaf_count) {
+      const double2 distance2 = pair_distances2(&tree->boxes[node], point);
+      const bool low_first = distance2[0] <= distance2[1];
+      const double near_by = low_first ? distance2[0] : distance2[1], further = low_first ? distance2[1] : distance2[0];
+      stack[depth] = (step){2 * node + low_first, further};
+      depth += further < best;
+      node = near_by < best ? 2 * node + !low_first : 0;
     }
-    const double2 distance2 = pair_distances2(&tree->boxes[node], point);
-    const double low = distance2[0], high = distance2[1];
-    const bool low_first = low <= high;
-    stack[depth] = (step){2 * node + low_first, low_first ? high : low};
-    depth += stack[depth].distance2 < best;
-    stack[depth] = (step){2 * node + !low_first, low_first ? low : high};
-    depth += stack[depth].distance2 < best;
+    if (node != 0) best = leaf_nearest2(tree, node - tree->leaf_count, point, best, edge, near);
   }
   return sqrt(best);
 }
