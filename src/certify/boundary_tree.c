@@ -43,7 +43,7 @@ struct laves__boundary_tree {
   box_pair *boxes;          /* [leaf_count]: [i] holds nodes 2i and 2i + 1; there is no node 0 */
   box_pair *triangle_boxes; /* [leaf_count][LEAF_PAIRS], a little wider: BOX_SLACK */
   int8_t *levels;           /* [2 leaf_count] the least in each box */
-  int greatest;       /* of all levels */
+  int greatest;             /* of all levels */
 };
 
 /* ---- one triangle, one box ---- */
@@ -265,7 +265,9 @@ void laves__boundary_tree_free(laves__boundary_tree *tree) {
 
 /* ---- queries ---- */
 
-static double distance2_to(const triangle *t, laves__vec3 p) { return nearest2(v3_sub(t->a, p), v3_sub(t->b, p), v3_sub(t->c, p)); }
+static double distance2_to(const triangle *t, laves__vec3 p) {
+  return nearest2(v3_sub(t->a, p), v3_sub(t->b, p), v3_sub(t->c, p));
+}
 
 static double leaf_nearest2(const laves__boundary_tree *tree, size_t leaf, laves__vec3 p, double best, float *edge,
                             size_t *near) {

@@ -73,7 +73,8 @@ static void raise_to_changes(double *most, const double *a, const double *b, int
   }
 }
 
-/* The largest change of phi along an edge of the grid: for each place of a layer over all layers first, which runs side by side. */
+/* The largest change of phi along an edge of the grid: for each place of a layer over all layers first, which runs side by side.
+ */
 static double steepest(const block *b) {
   double most[NODES * NODES] = {0}, all = 0;
   for (int z = 0; z < NODES; z++) {

@@ -370,8 +370,8 @@ static bool seal_cells(laves__lattice *l) {
   return true;
 }
 
-/* Likewise, no tet around a site may belong to a cell without a record that lies on the other side. (One that has got a record since
- * the cells were linked is not given a second one.) */
+/* Likewise, no tet around a site may belong to a cell without a record that lies on the other side. (One that has got a record
+ * since the cells were linked is not given a second one.) */
 static bool seal_owners(laves__lattice *l, size_t index) {
   const int32_t at[3] = {l->record[index].xyz[0], l->record[index].xyz[1], l->record[index].xyz[2]};
   for (int site = 0; site < LAVES__C15_SITES; site++)
