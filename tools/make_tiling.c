@@ -277,6 +277,28 @@ static void print_stars(const tiling *t) {
     }
     printf("},\n");
   }
+  printf("};\n\n");
+}
+
+/* Bit i for star[i] where the link is a corner of it. */
+static unsigned tets_with(const tiling *t, const star_tet *star, int count, const link *with) {
+  unsigned tets = 0;
+  for (int i = 0; i < 4 * count; i++) {
+    const link corner = link_in_star(t, &star[i / 4], i % 4);
+    if (by_link(&corner, with) == 0) tets |= 1u << i / 4;
+  }
+  return tets;
+}
+
+static void print_stars_of_neighbours(const tiling *t) {
+  star_tet star[MAX_STAR];
+  link links[MAX_DEGREE];
+  printf("const uint32_t laves__c15_star_with[LAVES__C15_SITES][LAVES__C15_MAX_DEGREE] = {\n");
+  for (int s = 0; s < SITES; s++) {
+    const int count = star_of(t, s, star), degree = neighbours_of(t, s, links);
+    for (int i = 0; i < degree; i++) printf("%s0x%x", i ? ", " : "  {", tets_with(t, star, count, &links[i]));
+    printf("},\n");
+  }
   printf("};\n");
 }
 
@@ -293,5 +315,6 @@ int main(void) {
   print_tets(&t);
   print_neighbours(&t);
   print_stars(&t);
+  print_stars_of_neighbours(&t);
   return 0;
 }

@@ -58,5 +58,7 @@ extern const uint8_t laves__c15_degree[LAVES__C15_SITES];
 extern const laves__c15_link laves__c15_neighbour[LAVES__C15_SITES][LAVES__C15_MAX_DEGREE];
 extern const uint8_t laves__c15_star_size[LAVES__C15_SITES];
 extern const laves__c15_star_tet laves__c15_star[LAVES__C15_SITES][LAVES__C15_MAX_STAR];
+/* Of a site and its k-th neighbour: bit i for each tet laves__c15_star[site][i] that has the edge between the two. */
+extern const uint32_t laves__c15_star_with[LAVES__C15_SITES][LAVES__C15_MAX_DEGREE];
 
 #endif

@@ -158,28 +158,30 @@ static uint64_t graph_star_kept(const laves__lattice *lattice, laves__site s) {
   return kept;
 }
 
-/* The link of a site holds its neighbours, so the labels of those decide every tet of the star. */
+/* Of the tets of a star given as bits those that are kept though no corner is IN. */
+static uint64_t solid_of_star(const laves__lattice *lattice, const laves__record *r, int site, uint64_t tets) {
+  uint64_t solid = 0;
+  for (int k = 0; tets >> k; k++) {
+    const laves__c15_star_tet star = laves__c15_star[site][k];
+    const int32_t owner = r->around[star.cell];
+    if (tets >> k & 1 && owner >= 0 && laves__bit(lattice->record[owner].solid, star.tet)) solid |= UINT64_C(1) << k;
+  }
+  return solid;
+}
+
+/* Every corner of the star's tets but the site is a neighbour of it: each neighbour decides for the tets that it is in. */
 uint64_t laves__star_kept(const laves__lattice *lattice, int32_t record, int site) {
   const laves__record *r = &lattice->record[record];
   const laves__label own = (laves__label)r->label[site];
   if (own == LAVES__LABEL_OUT) return 0;
   if (lattice->graph) return graph_star_kept(lattice, (laves__site){record, (uint8_t)site});
-  uint64_t kept = 0;
-  for (int k = 0; k < laves__c15_star_size[site]; k++) {
-    const laves__c15_star_tet star = laves__c15_star[site][k];
-    const int ox = star.cell % 3, oy = star.cell / 3 % 3, oz = star.cell / 9;
-    bool any_in = own == LAVES__LABEL_IN, any_out = false;
-    for (int j = 0; j < 4 && !any_out; j++) {
-      if (j == star.corner) continue;
-      const laves__c15_corner corner = laves__c15_tet[star.tet][j];
-      const int cell = ox + (corner.shift & 1) + 3 * (oy + ((corner.shift >> 1) & 1)) + 9 * (oz + (corner.shift >> 2));
-      const laves__label label = laves__site_label(lattice, (laves__site){r->around[cell], corner.site});
-      any_out = label == LAVES__LABEL_OUT;
-      any_in |= label == LAVES__LABEL_IN;
-    }
-    if (any_out) continue;
-    const int32_t owner = r->around[star.cell];
-    if (any_in || (owner >= 0 && laves__bit(lattice->record[owner].solid, star.tet))) kept |= UINT64_C(1) << k;
+  uint64_t out = 0, in = 0;
+  for (int k = 0; k < laves__c15_degree[site]; k++) {
+    const laves__label label = laves__site_label(lattice, laves__neighbour(r, site, k));
+    if (label == LAVES__LABEL_OUT) out |= laves__c15_star_with[site][k];
+    if (label == LAVES__LABEL_IN) in |= laves__c15_star_with[site][k];
   }
-  return kept;
+  const uint64_t whole = (UINT64_C(1) << laves__c15_star_size[site]) - 1, left = whole & ~out;
+  if (own == LAVES__LABEL_IN) return left;
+  return (left & in) | solid_of_star(lattice, r, site, left & ~in);
 }

@@ -59,53 +59,59 @@ static int cell_at(int x, int y, int z) { return x + CELLS * (y + CELLS * z); }
 
 static void evaluate_nodes(const search *s, block *b) {
   laves__vec3 points[BLOCK_NODES];
-  for (int i = 0; i < BLOCK_NODES; i++) {
-    const laves__vec3 steps = v3(i % NODES, i / NODES % NODES, i / (NODES * NODES));
-    points[i] = v3_mad(b->corner, steps, b->width);
-  }
+  for (int z = 0; z < NODES; z++)
+    for (int y = 0; y < NODES; y++)
+      for (int x = 0; x < NODES; x++) points[node_at(x, y, z)] = v3_mad(b->corner, v3(x, y, z), b->width);
   s->oracle->evaluate(s->oracle->self, BLOCK_NODES, points, b->phi, NULL);
 }
 
-/* The largest change of phi along an edge of the grid. */
+/* Raises most[i] to |a[i] - b[i]|. */
+static void raise_to_changes(double *most, const double *a, const double *b, int count) {
+  for (int i = 0; i < count; i++) {
+    const double change = fabs(a[i] - b[i]);
+    most[i] = change > most[i] ? change : most[i];
+  }
+}
+
+/* The largest change of phi along an edge of the grid: for each place of a layer over all layers first, which runs side by side.
+ */
 static double steepest(const block *b) {
-  double most = 0;
-  for (int z = 0; z < NODES; z++)
-    for (int y = 0; y < NODES; y++)
-      for (int x = 0; x < NODES; x++) {
-        const double *phi = &b->phi[node_at(x, y, z)];
-        const double along_x = x < CELLS ? fabs(phi[1] - phi[0]) : 0, along_y = y < CELLS ? fabs(phi[NODES] - phi[0]) : 0;
-        const double along_z = z < CELLS ? fabs(phi[NODES * NODES] - phi[0]) : 0;
-        if (along_x > most) most = along_x;
-        if (along_y > most) most = along_y;
-        if (along_z > most) most = along_z;
-      }
-  return most;
+  double most[NODES * NODES] = {0}, all = 0;
+  for (int z = 0; z < NODES; z++) {
+    const double *layer = b->phi + z * NODES * NODES;
+    for (int y = 0; y < NODES; y++) raise_to_changes(most + y * NODES, layer + y * NODES, layer + y * NODES + 1, CELLS);
+    raise_to_changes(most, layer, layer + NODES, NODES * CELLS);
+    if (z < CELLS) raise_to_changes(most, layer, layer + NODES * NODES, NODES * NODES);
+  }
+  for (int i = 0; i < NODES * NODES; i++) all = most[i] > all ? most[i] : all;
+  return all;
 }
 
-/* What is known of some neighbouring nodes: how many are inside, and the least |phi|. */
-typedef struct summary {
-  double least;
-  int inside, count;
-} summary;
-
-static summary join(summary a, summary b) {
-  return (summary){a.least < b.least ? a.least : b.least, a.inside + b.inside, a.count + b.count};
+/* From the values of nodes to those of cells: the least |phi| of the eight corners, and how many are inside. Two at a time along
+ * each axis in turn, a third of the steps that corner by corner takes; what is no cell gets what is not looked at. */
+static void join_corners(double least[BLOCK_NODES], uint8_t inside[BLOCK_NODES]) {
+  for (int step = 1; step <= NODES * NODES; step *= NODES)
+    for (int i = 0; i + step < BLOCK_NODES; i++) {
+      least[i] = least[i] < least[i + step] ? least[i] : least[i + step];
+      inside[i] = (uint8_t)(inside[i] + inside[i + step]);
+    }
 }
 
-/* The eight corners of each cell, two at a time along each axis in turn: a third of the steps that corner by corner takes. */
 static void find_kinds(block *b) {
   const double near = SHEET_NEAR * steepest(b);
-  summary at[BLOCK_NODES];
+  double least[BLOCK_NODES];
+  uint8_t inside[BLOCK_NODES];
   for (int i = 0; i < BLOCK_NODES; i++) {
-    const double phi = b->phi[i];
-    at[i] = (summary){isnan(phi) ? INFINITY : fabs(phi), phi < 0, 1};
+    least[i] = isnan(b->phi[i]) ? INFINITY : fabs(b->phi[i]);
+    inside[i] = b->phi[i] < 0;
   }
-  for (int step = 1; step <= NODES * NODES; step *= NODES)
-    for (int i = 0; i + step < BLOCK_NODES; i++) at[i] = join(at[i], at[i + step]);
-  for (int i = 0; i < BLOCK_CELLS; i++) {
-    const summary *s = &at[node_at(i % CELLS, i / CELLS % CELLS, i / (CELLS * CELLS))];
-    b->kinds[i] = s->inside > 0 && s->inside < s->count ? CROSSED : s->least <= near ? NEAR_ZERO : EMPTY;
-  }
+  join_corners(least, inside);
+  for (int z = 0; z < CELLS; z++)
+    for (int y = 0; y < CELLS; y++)
+      for (int x = 0; x < CELLS; x++) {
+        const int i = node_at(x, y, z);
+        b->kinds[cell_at(x, y, z)] = inside[i] > 0 && inside[i] < 8 ? CROSSED : least[i] <= near ? NEAR_ZERO : EMPTY;
+      }
 }
 
 static bool has_crossed_neighbour(const block *b, int x, int y, int z) {

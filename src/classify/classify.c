@@ -309,11 +309,28 @@ typedef struct neighbourhood {
   int32_t cell[WITH_RIM][WITH_RIM][WITH_RIM]; /* z, y, x */
 } neighbourhood;
 
-static void look_around(const laves__lattice *l, const int32_t first[3], neighbourhood *n) {
-  for (int z = 0; z < WITH_RIM; z++)
-    for (int y = 0; y < WITH_RIM; y++)
-      for (int x = 0; x < WITH_RIM; x++)
-        n->cell[z][y][x] = laves__lattice_cell(l, first[0] + x - RIM, first[1] + y - RIM, first[2] + z - RIM);
+/* The cells of one brick that lie in the neighbourhood of brick b; `step` leads from b to it. */
+static void look_into(const laves__lattice *l, const int32_t b[3], const int step[3], neighbourhood *n) {
+  enum { SIDE = LAVES__BRICK_SIDE };
+  int first[3], end[3]; /* in the neighbourhood */
+  bool exists = true;
+  for (int axis = 0; axis < 3; axis++) {
+    first[axis] = step[axis] < 0 ? 0 : RIM + step[axis] * SIDE;
+    end[axis] = step[axis] < 0 ? RIM : step[axis] > 0 ? WITH_RIM : RIM + SIDE;
+    exists &= b[axis] + step[axis] >= 0 && b[axis] + step[axis] < l->bricks[axis];
+  }
+  const int32_t entry =
+      exists ? l->directory[slot_of(l, (int32_t[3]){b[0] + step[0], b[1] + step[1], b[2] + step[2]})] : LAVES__OUT;
+  for (int z = first[2]; z < end[2]; z++)
+    for (int y = first[1]; y < end[1]; y++)
+      for (int x = first[0]; x < end[0]; x++) {
+        const int inside = (x - RIM - step[0] * SIDE) + SIDE * ((y - RIM - step[1] * SIDE) + SIDE * (z - RIM - step[2] * SIDE));
+        n->cell[z][y][x] = entry < 0 ? entry : l->brick[entry].cell[inside];
+      }
+}
+
+static void look_around(const laves__lattice *l, const int32_t b[3], neighbourhood *n) {
+  for (int k = 0; k < 27; k++) look_into(l, b, (int[3]){k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1}, n);
 }
 
 static void place_in_brick(int inside, int at[3]) {
@@ -331,27 +348,27 @@ static bool is_unsealed(const neighbourhood *n, const int at[3]) {
 }
 
 /* Looked up once for all cells of the brick, and again after a change, which is rare. */
-static bool seal_brick(laves__lattice *l, const int32_t first[3]) {
+static bool seal_brick(laves__lattice *l, const int32_t b[3]) {
   neighbourhood n;
-  look_around(l, first, &n);
+  look_around(l, b, &n);
   for (int inside = 0; inside < LAVES__BRICK_CELLS; inside++) {
     int at[3];
     place_in_brick(inside, at);
     if (!is_unsealed(&n, at)) continue;
-    if (!seal_cell(l, first[0] + at[0], first[1] + at[1], first[2] + at[2])) return false;
-    look_around(l, first, &n);
+    int32_t cell[3];
+    for (int axis = 0; axis < 3; axis++) cell[axis] = l->lower[axis] + b[axis] * LAVES__BRICK_SIDE + at[axis];
+    if (!seal_cell(l, cell[0], cell[1], cell[2])) return false;
+    look_around(l, b, &n);
   }
   return true;
 }
 
-/* The first cell of a brick on the border of the solid; false for one that is whole. */
-static bool find_border_brick(const laves__lattice *l, size_t slot, int32_t first[3]) {
+/* Where a brick lies; false for one that is whole, away from the border of the solid. */
+static bool find_border_brick(const laves__lattice *l, size_t slot, int32_t b[3]) {
   size_t rest = slot;
-  int32_t b[3];
   for (int axis = 0; axis < 3; axis++) {
     b[axis] = (int32_t)(rest % (size_t)l->bricks[axis]);
     rest /= (size_t)l->bricks[axis];
-    first[axis] = l->lower[axis] + b[axis] * LAVES__BRICK_SIDE;
   }
   return l->directory[slot] != LAVES__OUT && !is_deep_brick(l, b);
 }
@@ -360,10 +377,10 @@ static double count_unsealed(const void *user, size_t begin, size_t end) {
   const laves__lattice *l = user;
   double count = 0;
   for (size_t slot = begin; slot < end; slot++) {
-    int32_t first[3];
+    int32_t b[3];
     neighbourhood n;
-    if (!find_border_brick(l, slot, first)) continue;
-    look_around(l, first, &n);
+    if (!find_border_brick(l, slot, b)) continue;
+    look_around(l, b, &n);
     for (int inside = 0; inside < LAVES__BRICK_CELLS; inside++) {
       int at[3];
       place_in_brick(inside, at);
@@ -378,8 +395,8 @@ static double count_unsealed(const void *user, size_t begin, size_t end) {
 static bool seal_cells(laves__lattice *l) {
   if (laves__parallel_sum(l->context, NULL, l->directory_count, count_unsealed, l) == 0) return true;
   for (size_t slot = 0; slot < l->directory_count; slot++) {
-    int32_t first[3];
-    if (find_border_brick(l, slot, first) && !seal_brick(l, first)) return false;
+    int32_t b[3];
+    if (find_border_brick(l, slot, b) && !seal_brick(l, b)) return false;
   }
   return true;
 }

@@ -18,7 +18,7 @@
 #include "fixtures/stride.h"
 
 /* Refusals of each kind in the quick run of a job; the few are for slow tools. */
-enum { QUICK_RUNS = 15, FEW_RUNS = 5 };
+enum { QUICK_RUNS = 15, FEW_RUNS = 3 };
 
 static job_place place;
 

@@ -8,6 +8,7 @@
 
 #include "fixtures/hard_solids.h"
 #include "fixtures/stages.h"
+#include "fixtures/stride.h"
 
 typedef char hash_text[33];
 
@@ -34,7 +35,7 @@ static void threads_and_runs_change_nothing(void **state) {
     const laves_options options = options_of_tets(20000);
     hash_text first, other;
     hash_of_expression(solids[i], &options, 1, first);
-    for (size_t t = 1; t < LAVES__COUNT_OF(threads); t++) {
+    for (size_t t = 1; t<LAVES__COUNT_OF(threads); t += test_stride()> 1 ? 2 : 1) {
       hash_of_expression(solids[i], &options, threads[t], other);
       if (strcmp(first, other) != 0) fail_msg("%s: %d threads give another mesh", solids[i], threads[t]);
     }
@@ -44,7 +45,7 @@ static void threads_and_runs_change_nothing(void **state) {
 /* Improvement works hardest, and parts and trims come up, where the input is noise. */
 static void noise_is_meshed_the_same(void **state) {
   (void)state;
-  for (int i = 0; i < hard_solid_count; i += 3) {
+  for (int i = 0; i<hard_solid_count; i += test_stride()> 1 ? 9 : 3) {
     const laves_function function = hard_function(&hard_solids[i]);
     hash_text hash[2];
     bool any = true;

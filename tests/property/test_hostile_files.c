@@ -268,7 +268,7 @@ static void lines_may_have_no_end(void **state) {
     for (size_t i = 0; i < sizeof fills / sizeof fills[0]; i++) {
       content c = {0};
       put(&c, "%s", files[f].start);
-      repeat(&c, fills[i], i == 0 ? LONG : LONG / 10);
+      repeat(&c, fills[i], i == 0 && test_stride() == 1 ? LONG : LONG / 10);
       try_file(files[f].kind, files[f].name, &c);
     }
   }
@@ -467,9 +467,10 @@ static void put_zeros_compressed(content *c, size_t length, bool gzip) {
 /* What the header does not ask for is not unpacked: a bomb takes no more than the samples that are promised. */
 static void bombs_are_not_unpacked(void **state) {
   (void)state;
+  const size_t bomb = (size_t)1 << (test_stride() > 1 ? 26 : 28);
   content c = {0};
   put(&c, "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nencoding: gzip\nendian: little\n\n");
-  put_zeros_compressed(&c, (size_t)1 << 28, true);
+  put_zeros_compressed(&c, bomb, true);
   refuse(SIZES, "a.nrrd", &c);
   put(&c, "NRRD0004\ntype: float\ndimension: 3\nsizes: 1000 1000 1000\nencoding: gzip\nendian: little\n\n");
   put_zeros_compressed(&c, 1000, true);
@@ -483,7 +484,7 @@ static void bombs_are_not_unpacked(void **state) {
         "NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/></Points></Piece></UnstructuredGrid>"
         "<AppendedData encoding=\"raw\">_");
     content packed = {0};
-    put_zeros_compressed(&packed, (size_t)1 << 28, false);
+    put_zeros_compressed(&packed, bomb, false);
     put_u32(&c, 1);
     put_u32(&c, said[i]);
     put_u32(&c, 0);

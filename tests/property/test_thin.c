@@ -95,7 +95,7 @@ static void what_is_lost_is_named(void **state) {
   (void)state;
   laves_context *context = laves_context_create(NULL);
   int named = 0;
-  for (int position = 0; position < 6; position++) {
+  for (int position = 0; position<6; position += test_stride()> 1 ? 3 : 1) {
     laves_domain *domain = thin_domain(context, GAP_PLATES, 0.3, true);
     laves_options options = turned_options(position);
     laves_mesh *mesh;
@@ -118,7 +118,7 @@ static void what_is_lost_is_named(void **state) {
     laves_mesh_free(mesh);
     laves_domain_free(domain);
   }
-  print_message("a gap of 0.3 sizes was closed, and named, in %d of 6 positions\n", named);
+  print_message("a gap of 0.3 sizes was closed, and named, in %d positions\n", named);
   assert_true(named > 0);
   laves_context_free(context);
 }

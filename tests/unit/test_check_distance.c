@@ -139,6 +139,26 @@ static void tree_finds_the_nearest(void **state) {
   laves_mesh_free(mesh);
 }
 
+/* A point that is no number is near to nothing, and reads nothing beyond the triangles. */
+static void tree_of_a_few_triangles(void **state) {
+  laves_mesh *mesh = fixture_cubes(*state, 1, 1, 1, NULL, NULL);
+  laves__boundary boundary;
+  laves__boundary_tree *tree;
+  float edge = 0;
+  assert_int_equal(laves__find_boundary(*state, mesh, &boundary, NULL), LAVES_OK);
+  boundary.count = 5; /* a leaf, and one that has room */
+  assert_int_equal(laves__boundary_tree_build(*state, mesh, &boundary, v3(0, 0, 0), NULL, 0, &tree, NULL), LAVES_OK);
+  size_t near = LAVES__NO_TRIANGLE, none = LAVES__NO_TRIANGLE;
+  assert_true(laves__boundary_tree_distance(tree, v3(NAN, NAN, NAN), INFINITY, &edge, &none) == INFINITY);
+  assert_int_equal(none, LAVES__NO_TRIANGLE);
+  assert_true(laves__boundary_tree_distance(tree, v3(5, 5, 5), INFINITY, &edge, &near) < INFINITY);
+  assert_in_range(near, 0, 4);
+  laves__boundary_tree_free(tree);
+  boundary.count = mesh->face_count;
+  laves__boundary_free(&boundary);
+  laves_mesh_free(mesh);
+}
+
 static void tree_of_nothing(void **state) {
   laves_mesh *mesh = fixture_cubes(*state, 1, 1, 1, NULL, NULL);
   laves__boundary empty = {0};
@@ -489,6 +509,7 @@ static void distances_by_the_edges(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       TEST(tree_finds_the_nearest),
+      TEST(tree_of_a_few_triangles),
       TEST(tree_of_nothing),
       TEST(inscribed_ball),
       TEST(larger_sphere),

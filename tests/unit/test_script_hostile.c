@@ -132,7 +132,7 @@ static const attack slow[] = {
 static void endless_scripts_end(void **state) {
   (void)state;
   for (size_t i = 0; i < LAVES__COUNT_OF(endless); i += (size_t)test_stride()) assert_ends(&endless[i], NULL);
-  assert_ends(&slow[0], NULL); /* the others are cancelled, below */
+  if (test_stride() == 1) assert_ends(&slow[0], NULL); /* takes its ten seconds; all of them are cancelled, below */
 }
 
 /* The border of such a table, found by doubling, is far out: its numbers are in the hash part from the start. */
