@@ -103,7 +103,7 @@ static inline bool laves__weighs_all(const laves__layer *layer) { return layer->
 
 /* What a tet lacks; that it is outside counts by itself, so that one that is far outside is not traded for many that are so by
  * little. */
-#define LAVES__OUTSIDE_COST 0.05
+#define LAVES__OUTSIDE_COST 0.02
 static inline double laves__shortfall(double quality) { return quality < 1 ? LAVES__OUTSIDE_COST + 1 - quality : 0; }
 
 /* The same for the tets [begin, end), several at once: quality[t - begin] of those that live. The digits are the same. */
