@@ -37,8 +37,11 @@ enum {
  * few passes of contraction, and no more patience. */
 static const double crowd = 0.03;
 static const size_t crowd_min = 2000; /* tets; fewer never are a crowd */
-/* Where creases crowd, no patience is left for what remains once some of them were let go of. */
-static const size_t crease_crowd_min = 500; /* tets */
+/* Creases crowd where more than this share, and this many, are bad. Then contraction while vertices are brought to creases is for
+ * what is far outside. */
+static const double crease_crowd = 0.01;
+static const size_t crease_crowd_min = 250;
+static const size_t freed_crowd_min = 500; /* tets; the same once some features were let go of, which leaves few */
 /* Where even more than this share is bad after one pass, the solid is noise at this size: smoothing goes on for one more pass
  * only, and only tets far outside get a contraction. */
 static const double rough_share = 0.2;
@@ -259,7 +262,8 @@ static laves_result run_pass(work *w, size_t *before, laves_error *error) {
 }
 
 /* Passes of one kind until `patience` of them in a row found too little cured. (A contraction may leave more bad tets than
- * it found, all of them better than the worst was; the next pass smooths them.) */
+ * it found, all of them better than the worst was; the next pass smooths them. Where features crowd it does not: there a pass
+ * that leaves more than there were is the last.) */
 static laves_result run_passes(work *w, int passes, int patience, laves_error *error) {
   const int turns = w->layer->patch ? laves__blocks_turns(&w->blocks) : 1;
   size_t best = SIZE_MAX;
@@ -267,6 +271,7 @@ static laves_result run_passes(work *w, int passes, int patience, laves_error *e
   for (int pass = 0, idle = 0; pass < most && idle < patience; pass++) {
     size_t before = 0;
     if (w->passes_left == 0 || is_late(w)) return LAVES_OK;
+    if (pass > 0 && laves__weighs_all(w->layer) && count_bad(w) > best) return LAVES_OK;
     w->passes_left--;
     for (int turn = 0; turn < turns; turn++) {
       size_t left = 0;
@@ -456,13 +461,11 @@ static void leave_out_sharp(work *w, const laves__window *window) {
 static laves_result bring_home(work *w, laves_error *error) {
   enum { ROUNDS = 6, SMOOTH_ROUNDS = 2 };
   static const double home_floor = 0.05; /* quality that coming home may cost: about 9 degrees */
-  static const double home_crowd = 0.01; /* share of bad tets, and their number, beyond which creases crowd */
-  static const size_t home_crowd_min = 250;
   laves_result result = run_passes(w, 1, 1, error);
   for (int round = 0; result == LAVES_OK && round < ROUNDS && count_off(w) > 0; round++) {
     settle_all(w, home_floor);
     w->rounds = round >= SMOOTH_ROUNDS;
-    if (w->rounds > 0 && is_crowded(w, home_crowd, home_crowd_min)) w->admission.below = far_outside;
+    if (w->rounds > 0 && is_crowded(w, crease_crowd, crease_crowd_min)) w->admission.below = far_outside;
     result = run_passes(w, 1, 1, error);
   }
   w->admission.below = 1;
@@ -476,7 +479,7 @@ static laves_result mend_again(work *w, laves_error *error) {
   w->admission.below = far_outside;
   laves_result result = run_passes(w, SMOOTH_PASSES, 1, error);
   w->rounds = THOROUGH_ROUNDS;
-  if (is_crowded(w, 0, crease_crowd_min)) w->worthwhile = worthwhile_again;
+  if (is_crowded(w, 0, freed_crowd_min)) w->worthwhile = worthwhile_again;
   if (result == LAVES_OK) result = run_passes(w, CONTRACT_PASSES, 1, error);
   if (result == LAVES_OK) peel_all(w);
   return result;
