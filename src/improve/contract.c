@@ -217,7 +217,7 @@ static bool try_contraction(const contraction *c, laves__layer *layer, int32_t a
   laves__smooth_vertex(c->frame, c->measure, c->target, layer, a, j);
   if (!(laves__star_quality(layer, a) > promising * before)) return false;
   for (int round = 0; round < c->rounds; round++) smooth_around(c->frame, c->measure, c->target, layer, a, j);
-  return worst_touched(layer, j) > before && laves__lacks_less(layer, j);
+  return worst_touched(layer, j) > before && (!laves__weighs_all(c->measure, before) || laves__lacks_less(layer, j));
 }
 
 /* Whether the boundary around a, just changed, lies well enough to the surface: within the limits or, which is looked at

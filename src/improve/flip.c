@@ -213,7 +213,7 @@ static bool may_open(const flipping *f, int32_t a, int32_t b, const ring *r) {
 /* Whether the fresh tets lack less than the old; see laves__lacks_less(). */
 static bool helps(const flipping *f, const change *c) {
   double before = 0, then = 0;
-  if (!laves__weighs_all(f->layer)) return true;
+  if (!laves__weighs_all(f->measure, c->before)) return true;
   for (int i = 0; i < c->old_count; i++) before += laves__shortfall(f->layer->quality[c->old[i]]);
   for (int i = 0; i < c->fresh_count; i++) then += laves__shortfall(c->quality[i]);
   return then < before;

@@ -9,8 +9,10 @@
  *
  * First passes only smooth; when that no longer helps, contraction joins in; the few that are still clearly outside are
  * treated once more with more smoothing around each contraction. On a graded background flips join in from the first. A flip,
- * contraction or split is kept when the worst of what it touches rises; where features are kept, all that it touches must also
- * lack less of what is asked, taken together.
+ * contraction or split is kept when the worst of what it touches rises. Where features are kept, all that it touches must also
+ * lack less of what is asked, taken together: where features crowd one that is bad would else be cured at the cost of many, again
+ * and again. (Not for what is worst once features were let go of: the promise is near, and where it is broken all around is made
+ * anew. And not where the boundary is given, for which there is a schedule that goes from the worst to the others.)
  *
  * Where the layer has a mask of what is fresh, only tets with such a vertex are worked on; what is known of the others is that
  * nothing helped. */
@@ -51,6 +53,7 @@ static const double brief_admit = 0.6;      /* about 32 degrees */
 static const double worthwhile = 0.02;      /* see the member of `work` */
 static const double worthwhile_again = 0.1; /* the same for what is left once features were let go of, where that is a crowd */
 static const double thorough_below = 0.985; /* quality below which the few that remain get more patience */
+static const double dire = 0.37;            /* quality: about 25 to 146 degrees */
 static const double far_outside = 0.75;     /* quality: about 36 to 131 degrees for the standard window */
 static const size_t wall_count = 200;       /* bad ones; fewer get all the patience there is */
 static const double graded_crowd = 0.1;     /* what `crowd` is on a graded background, after flips */
@@ -64,6 +67,7 @@ laves__measure laves__measure_of(const laves__window *w) {
   return (laves__measure){.low_scale = 1 / (1 - cos(w->min_dihedral * radians)),
                           .high_scale = 1 / (1 + cos(w->max_dihedral * radians)),
                           .length_scale = w->volume_length > 0 ? 1 / w->volume_length : 1e30,
+                          .weighs_from = HUGE_VAL,
                           .held_low = w->held_min > 0 ? 1 - cos(w->held_min * radians) : -1,
                           .held_high = w->held_min > 0 ? 1 + cos(w->held_max * radians) : -1};
 }
@@ -271,7 +275,7 @@ static laves_result run_passes(work *w, int passes, int patience, laves_error *e
   for (int pass = 0, idle = 0; pass < most && idle < patience; pass++) {
     size_t before = 0;
     if (w->passes_left == 0 || is_late(w)) return LAVES_OK;
-    if (pass > 0 && laves__weighs_all(w->layer) && count_bad(w) > best) return LAVES_OK;
+    if (pass > 0 && w->measure.weighs_from < 0 && count_bad(w) > best) return LAVES_OK;
     w->passes_left--;
     for (int turn = 0; turn < turns; turn++) {
       size_t left = 0;
@@ -543,6 +547,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
             .layer = layer};
   w.population = count_population(layer);
   leave_out_sharp(&w, window);
+  if (layer->hold && !layer->patch) w.measure.weighs_from = window->again ? dire : -HUGE_VAL;
   const int workers = laves__workers(context);
   laves_result result = LAVES_OK;
   const bool flips = layer->scale || layer->hold;

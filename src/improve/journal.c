@@ -62,7 +62,6 @@ bool laves__journal_star_add(laves__journal *j, laves__layer *layer, int32_t v, 
 
 bool laves__lacks_less(const laves__layer *layer, const laves__journal *j) {
   double before = 0, now = 0;
-  if (!laves__weighs_all(layer)) return true;
   for (size_t i = 0; i < j->tet_count; i++) {
     const laves__tet_entry *was = &j->tet[i];
     if (was->corner[0] >= 0) before += laves__shortfall(was->quality);

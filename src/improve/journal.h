@@ -41,7 +41,7 @@ bool laves__journal_tet(laves__journal *journal, const laves__layer *layer, int3
 bool laves__journal_star(laves__journal *journal, const laves__layer *layer, int32_t vertex);
 /* Adds a tet to a star that the journal has; false when memory is short. */
 bool laves__journal_star_add(laves__journal *journal, laves__layer *layer, int32_t vertex, int32_t tet);
-/* Whether the tets that it has lack less of what is asked than before, where laves__weighs_all(); else true. */
+/* Whether the tets that it has lack less of what is asked than before, taken together. */
 bool laves__lacks_less(const laves__layer *layer, const laves__journal *journal);
 /* Puts everything back. */
 void laves__journal_undo(laves__journal *journal, laves__layer *layer);

@@ -27,6 +27,8 @@ typedef struct laves__measure {
   const laves__features *sharp; /* creases of which some are sharper than the next; NULL: none */
   double sharper_than;          /* degrees */
   double sharp_cosine;          /* of that, where the boundary is given and has such edges; 0: it has none */
+  double weighs_from; /* where the worst is at least this, a step must also lower what all tets that it touches lack of what is
+                         asked, taken together; see improve.c */
 } laves__measure;
 
 laves__measure laves__measure_of(const laves__window *window);
@@ -96,10 +98,8 @@ static inline double laves__layer_quality(const laves__measure *m, const laves__
   return laves__quality(m, p, laves__layer_cube(layer, tet), laves__measure_fixed(m, layer, tet));
 }
 
-/* Whether a step must also make what all tets that it touches lack of what is asked, taken together, less. Where features crowd,
- * one that is bad would else be cured at the cost of many, again and again. Elsewhere they get well in turn; and where the
- * boundary is given there is a schedule that goes from the worst to the others. */
-static inline bool laves__weighs_all(const laves__layer *layer) { return layer->hold && !layer->patch; }
+/* Whether a step must also lower what all tets that it touches lack. */
+static inline bool laves__weighs_all(const laves__measure *m, double worst) { return worst >= m->weighs_from; }
 
 /* What a tet lacks; that it is outside counts by itself, so that one that is far outside is not traded for many that are so by
  * little. */

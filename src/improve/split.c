@@ -218,8 +218,8 @@ static bool split_edge(const laves__frame *frame, const laves__measure *measure,
   bool good = split(layer, a, b, &r, m, slots, j) && finish(layer, a, &r, m, j) &&
               (measure_around(measure, layer, m) > LAVES__FLAT || layer->patch);
   for (int round = 0; good && round < ROUNDS; round++) smooth_around(frame, measure, target, layer, m, j);
-  good = good && worst_touched(layer, j) > fmax(before, LAVES__FLAT) && laves__lacks_less(layer, j) &&
-         laves__feature_faults(frame, layer, m) == 0;
+  good = good && worst_touched(layer, j) > fmax(before, LAVES__FLAT) &&
+         (!laves__weighs_all(measure, before) || laves__lacks_less(layer, j)) && laves__feature_faults(frame, layer, m) == 0;
   if (good && r.on_boundary) {
     laves__fit fit = LAVES__FIT_NONE;
     laves__fit_star(frame, layer, m, &fit);
