@@ -180,7 +180,11 @@ static void sum_pieces(void *user, size_t begin, size_t end, int worker) {
 }
 
 double laves__parallel_sum(laves_context *context, const char *phase, size_t count, laves__sum_fn *fn, const void *user) {
-  summation s = {.fn = fn, .user = user, .count = count, .piece = (count + PIECES - 1) / PIECES};
+  summation s; /* a small mesh has no time to clear all sums */
+  s.fn = fn;
+  s.user = user;
+  s.count = count;
+  s.piece = (count + PIECES - 1) / PIECES;
   if (s.piece < PIECE_MIN) s.piece = PIECE_MIN;
   const size_t pieces = (count + s.piece - 1) / s.piece;
   laves__parallel_for(context, phase, pieces, 1, sum_pieces, &s);

@@ -155,9 +155,11 @@ static void count_vertices(void *user, size_t begin, size_t end, int worker) {
 static void count_tets(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const numbering *n = user;
+  const bool graph = n->lattice->graph != NULL;
   for (size_t chunk = begin; chunk < end; chunk++) {
     size_t count = 0;
-    for (int i = 0, size = laves__chunk_size(n->lattice, chunk); i < size; i++)
+    for (int word = 0; !graph && word < 3; word++) count += (size_t)__builtin_popcountll(n->lattice->record[chunk].layer[word]);
+    for (int i = 0, size = laves__chunk_size(n->lattice, chunk); graph && i < size; i++)
       count += laves__tet_is(n->lattice, (laves__tet){(int32_t)chunk, (uint8_t)i}, LAVES__TET_LAYER);
     n->tet[chunk] = count;
   }
