@@ -5,6 +5,7 @@ and Netgen fill a surface whose triangles they keep: they are given the boundary
 the wished size, and the time of making it is not theirs. CGAL makes a surface of its own, from the input, as laves does.
 """
 
+import hashlib
 import json
 import math
 import os
@@ -475,23 +476,62 @@ def section_figures(rows):
     return figures
 
 
+class Done:
+    """What was measured for each solid, kept in the output folder until all is: a run that was cut off goes on where it was, when it
+    is started again with the same program."""
+
+    def __init__(self, bench):
+        with open(bench.program, "rb") as file:
+            self.run = {"program": hashlib.sha256(file.read()).hexdigest(), "quick": bench.options.quick}
+        self.path = os.path.join(bench.folder, "peers_unfinished.json")
+        self.parts = {}
+        if os.path.exists(self.path):
+            with open(self.path) as file:
+                kept = json.load(file)
+            if kept["run"] == self.run:
+                self.parts = kept["parts"]
+
+    def part(self, bench, name, measure, rows, notes):
+        """Adds the rows and notes that measure(rows, notes) makes, or made earlier."""
+        if name in self.parts:
+            bench.say(f"  {name}: measured earlier")
+        else:
+            part = {"rows": list(rows), "notes": []}
+            measure(part["rows"], part["notes"])
+            part["rows"] = part["rows"][len(rows):]
+            self.parts[name] = part
+            with open(self.path, "w") as file:
+                json.dump({"run": self.run, "parts": self.parts}, file)
+        rows += self.parts[name]["rows"]
+        notes += self.parts[name]["notes"]
+
+    def end(self):
+        if os.path.exists(self.path):
+            os.remove(self.path)
+
+
+def measure_solid(bench, folder, peers, name, crease, rows, notes):
+    path = make_subject(bench, folder, name)
+    if not path:
+        notes.append(f"{name} is not there: left out.")
+        bench.say("  " + notes[-1])
+        return
+    job = Job(bench, folder, name, crease, path, QUICK_TETS if bench.options.quick else TETS)
+    if job.facts:
+        compare(job, peers, rows, notes)
+
+
 def measure_peers(bench):
     rows, notes = [], []
-    peers = present_peers(bench, notes)
-    tets = QUICK_TETS if bench.options.quick else TETS
+    peers, done = present_peers(bench, notes), Done(bench)
     with tempfile.TemporaryDirectory() as folder:
         for name, crease in QUICK_SUBJECTS if bench.options.quick else SUBJECTS:
-            path = make_subject(bench, folder, name)
-            if not path:
-                notes.append(f"{name} is not there: left out.")
-                bench.say("  " + notes[-1])
-                continue
-            job = Job(bench, folder, name, crease, path, tets)
-            if job.facts:
-                compare(job, peers, rows, notes)
-        measure_curve(bench, folder, peers, rows)
+            done.part(bench, name, lambda own, told, name=name, crease=crease: measure_solid(bench, folder, peers, name, crease, own, told),
+                      rows, notes)
+        done.part(bench, "time against tets", lambda own, told: measure_curve(bench, folder, peers, own), rows, notes)
     if rows:
         bench.keep("peers", rows, section_figures(rows), notes)
+        done.end()
 
 
 # ---- drawing ----

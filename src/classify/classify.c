@@ -427,8 +427,8 @@ static bool seal_record(laves__lattice *l, size_t index) {
   for (int k = 0; k < 27; k++)
     if (r->around[k] < 0) beside[r->around[k] == LAVES__OUT] = true;
   if (!(has[0] && beside[1]) && !(has[1] && beside[0])) return true;
-  if (!seal_owners(l, index)) return false;
   const int32_t at[3] = {r->xyz[0], r->xyz[1], r->xyz[2]};
+  if (!seal_owners(l, index)) return false; /* r may have moved */
   for (int site = 0; site < LAVES__C15_SITES; site++)
     for (int k = 0; k < laves__c15_degree[site]; k++) {
       r = &l->record[index];
