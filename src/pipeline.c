@@ -94,9 +94,9 @@ static laves_result make_mesh(laves__run *r, laves_mesh **mesh) {
 
 /* Where sizes vary or features are kept improvement may cost some per cent of a count that was asked for; then all is made again
  * for a count that is larger by as much. Where features crowd, that share jumps with the size: some sizes are tried, and in the
- * end the best of them is taken. */
+ * end the best of them is taken. Noise takes long, and a count says little there: it gets two more tries. */
 static laves_result count_again(laves__run *r, laves_mesh **mesh, bool *again) {
-  enum { RECOUNTS = 5 };
+  enum { RECOUNTS = 5, NOISE_RECOUNTS = 2 };
   static const double tolerance = 0.025;
   const laves_options *o = r->options;
   const double wished = o->tet_target ? (double)o->tet_target : (double)o->vertex_target;
@@ -108,7 +108,7 @@ static laves_result count_again(laves__run *r, laves_mesh **mesh, bool *again) {
     r->best_size = r->frame.size;
   }
   r->kept = got / r->counted;
-  r->settled = r->recounts++ == RECOUNTS;
+  r->settled = r->recounts++ >= (r->noise ? NOISE_RECOUNTS : RECOUNTS);
   if (r->settled) *again = r->frame.size != r->best_size;
   if (!*again) return LAVES_OK;
   if (r->settled) r->frame.size = r->best_size;

@@ -52,13 +52,15 @@ static const laves__window feature_window = {.min_dihedral = 25, .max_dihedral =
 static const double noise_share = 0.3;
 static const size_t noise_count = 1000;
 
-static bool is_noise(const laves__run *r) {
+/* Whether more of the layer than a share and a number is outside the wide window. */
+static bool is_rougher(const laves__run *r, double share, size_t least) {
   const size_t bad = laves__improve_outside(&feature_window, &r->layer);
-  return bad > noise_count && (double)bad > noise_share * (double)r->layer.tet_count;
+  return bad > least && (double)bad > share * (double)r->layer.tet_count;
 }
 
 laves_result laves__hold_boundary(laves__run *r) {
   r->released = 0;
+  r->noise = false;
   r->frame.features = NULL;
   if (r->stuffed.vertices > 0) return LAVES_OK; /* all is cut: by wish, or since the solid is too thin to be snapped */
   laves_result result = find_features(r);
@@ -66,7 +68,7 @@ laves_result laves__hold_boundary(laves__run *r) {
   if (result != LAVES_OK || !r->frame.features) return result;
   r->rough = false; /* features make it so */
   result = hold_features(r);
-  if (result != LAVES_OK || !laves__may_mend(r) || !is_noise(r)) return result;
+  if (result != LAVES_OK || !laves__may_mend(r) || !is_rougher(r, noise_share, noise_count)) return result;
   result = laves__stuff_everything(r); /* improvement would be long, and come to this in the end */
   return result == LAVES_OK ? hold_features(r) : result;
 }
@@ -88,6 +90,7 @@ static laves_result improve(laves__run *r, bool again) {
                              .held_min = held ? r->guarantee->min_dihedral + held_slack : 0,
                              .held_max = held ? r->guarantee->max_dihedral - held_slack : 180,
                              .again = again,
+                             .noise = again && r->noise,
                              .brief = r->rough};
   const laves_result result =
       laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : laves__improve(&r->frame, &aim, &r->layer, r->error);
@@ -95,11 +98,18 @@ static laves_result improve(laves__run *r, bool again) {
   return result;
 }
 
+/* Where more than this share of the layer is outside that window after improvement, and no few tets, features are the noise of a
+ * surface rougher than the size (where creases crowd: at most a hundredth). */
+static const double unkept_share = 0.03;
+static const size_t unkept_count = 100;
+
 /* Where features come closer than the size allows, angles go before them: step by step vertices are let go of, and improved
- * again, until all is inside a wide window. */
+ * again, until all is inside a wide window. Of noise all that is near goes at once, since each step takes long there. */
 static laves_result release_features(laves__run *r) {
   laves_result result = LAVES_OK;
-  for (int what = LAVES__RELEASE_OFF; what < LAVES__RELEASES && result == LAVES_OK && r->options->improve; what++) {
+  if (!r->options->improve) return LAVES_OK;
+  r->noise = r->noise || is_rougher(r, unkept_share, unkept_count);
+  for (int what = r->noise ? LAVES__RELEASE_AROUND : LAVES__RELEASE_OFF; what < LAVES__RELEASES && result == LAVES_OK; what++) {
     const size_t released = laves__release_features(&r->frame, &feature_window, what, &r->layer);
     if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
     r->released += released;

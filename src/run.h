@@ -47,6 +47,7 @@ typedef struct laves__run {
   size_t distant;                    /* places still further away than asked */
   laves__vec3 distant_place;         /* the furthest of them */
   bool rough;                        /* the solid is rougher than the size */
+  bool noise;                        /* so are its features, which can't be kept */
   size_t gaps_before;                /* values of the caller's function that were no numbers, before this run */
   laves__region_counts regions;
   double wall, cpu; /* at the start of the stage under way */

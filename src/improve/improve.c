@@ -477,13 +477,20 @@ static laves_result bring_home(work *w, laves_error *error) {
   return result;
 }
 
-/* After features were let go of: only what is far outside, and what was freed, which is off the surface. */
-static laves_result mend_again(work *w, laves_error *error) {
+/* After features were let go of: only what is far outside, and what was freed, which is off the surface. Where that was noise,
+ * nothing else kept the others from the window: then all that is bad. */
+static laves_result mend_again(work *w, bool noise, laves_error *error) {
   settle_all(w, settle_floor);
   w->admission.below = far_outside;
   laves_result result = run_passes(w, SMOOTH_PASSES, 1, error);
   w->rounds = THOROUGH_ROUNDS;
   if (is_crowded(w, 0, freed_crowd_min)) w->worthwhile = worthwhile_again;
+  if (result == LAVES_OK) result = run_passes(w, CONTRACT_PASSES, 1, error);
+  if (result == LAVES_OK) peel_all(w);
+  if (!noise) return result;
+  w->admission.below = 1;
+  w->rounds = 1;
+  forget(w);
   if (result == LAVES_OK) result = run_passes(w, CONTRACT_PASSES, 1, error);
   if (result == LAVES_OK) peel_all(w);
   return result;
@@ -492,7 +499,7 @@ static laves_result mend_again(work *w, laves_error *error) {
 /* The schedule for what the layer is. */
 static laves_result mend_all(work *w, const laves__window *window, laves_error *error) {
   if (w->layer->patch) return mend_given(w, error);
-  if (window->again) return mend_again(w, error);
+  if (window->again) return mend_again(w, window->noise, error);
   const laves_result result = w->layer->hold ? bring_home(w, error) : LAVES_OK;
   if (result != LAVES_OK) return result;
   return w->layer->scale ? mend_graded(w, error) : mend_tiling(w, window->brief, error);
