@@ -9,10 +9,10 @@
  *
  * First passes only smooth; when that no longer helps, contraction joins in; the few that are still clearly outside are
  * treated once more with more smoothing around each contraction. On a graded background flips join in from the first. A flip,
- * contraction or split is kept when the worst of what it touches rises. Where features are kept, all that it touches must also
- * lack less of what is asked, taken together: where features crowd one that is bad would else be cured at the cost of many, again
- * and again. (Not for what is worst once features were let go of: the promise is near, and where it is broken all around is made
- * anew. And not where the boundary is given, for which there is a schedule that goes from the worst to the others.)
+ * contraction or split is kept when the worst of what it touches rises. Where creases crowd, all that it touches must also lack
+ * less of what is asked, taken together: one that is bad would else be cured at the cost of many, again and again. (Not for what
+ * is worst once features were let go of: the promise is near, and where it is broken all around is made anew. And not where the
+ * boundary is given, for which there is a schedule that goes from the worst to the others.)
  *
  * Where the layer has a mask of what is fresh, only tets with such a vertex are worked on; what is known of the others is that
  * nothing helped. */
@@ -40,7 +40,7 @@ enum {
 static const double crowd = 0.03;
 static const size_t crowd_min = 2000; /* tets; fewer never are a crowd */
 /* Creases crowd where more than this share, and this many, are bad. Then contraction while vertices are brought to creases is for
- * what is far outside. */
+ * what is far outside, and steps are weighed. */
 static const double crease_crowd = 0.01;
 static const size_t crease_crowd_min = 250;
 static const size_t freed_crowd_min = 500; /* tets; the same once some features were let go of, which leaves few */
@@ -330,12 +330,28 @@ static bool is_crowded(const work *w, double share, size_t least) {
   return bad > least && (double)bad > share * (double)w->population;
 }
 
+static bool creases_crowd(const work *w) { return is_crowded(w, crease_crowd, crease_crowd_min); }
+
+/* Whether all that a step touches is weighed is decided anew where vertices come home, and before each kind of work. */
+static void weigh_crowds(work *w) {
+  if (w->layer->hold) w->measure.weighs_from = creases_crowd(w) ? -HUGE_VAL : HUGE_VAL;
+}
+
 /* Patience is new for all that remains. */
 static void forget(work *w) {
   for (size_t t = 0; t < w->layer->tet_count; t++) {
     w->given_up[t] = HUGE_VAL;
     w->tries[t] = 0;
   }
+}
+
+/* What is still far outside is cured at any cost: the worst angle of a mesh counts for more than how many are outside by little. */
+static laves_result mend_worst(work *w, laves_error *error) {
+  enum { WORST_PASSES = 4 };
+  w->measure.weighs_from = HUGE_VAL;
+  w->admission.below = far_outside;
+  forget(w);
+  return run_passes(w, WORST_PASSES, 1, error);
 }
 
 /* The lattice's connectivity is good: smoothing does nearly all, contraction the rest. */
@@ -354,8 +370,10 @@ static laves_result mend_tiling(work *w, bool brief, laves_error *error) {
   w->rounds = THOROUGH_ROUNDS;
   w->admission.below = thorough_below;
   forget(w);
+  weigh_crowds(w);
   const int patience = is_crowded(w, 0, crowd_min) ? 1 : 2;
   if (result == LAVES_OK && !crowded && !rough) result = run_passes(w, CONTRACT_PASSES, patience, error);
+  if (result == LAVES_OK && w->layer->hold && !rough) result = mend_worst(w, error);
   if (result == LAVES_OK) peel_all(w);
   return result;
 }
@@ -375,6 +393,7 @@ static laves_result mend_graded(work *w, laves_error *error) {
   w->admission.below = 1;
   if (result == LAVES_OK && !crowded) result = run_passes(w, CROWD_PASSES, 2, error);
   w->rounds = THOROUGH_ROUNDS;
+  weigh_crowds(w);
   w->admission.below = crowded ? far_outside : thorough_below;
   forget(w);
   if (result == LAVES_OK && !rough) result = run_passes(w, CONTRACT_PASSES, 2, error);
@@ -469,11 +488,13 @@ static laves_result bring_home(work *w, laves_error *error) {
   for (int round = 0; result == LAVES_OK && round < ROUNDS && count_off(w) > 0; round++) {
     settle_all(w, home_floor);
     w->rounds = round >= SMOOTH_ROUNDS;
-    if (w->rounds > 0 && is_crowded(w, crease_crowd, crease_crowd_min)) w->admission.below = far_outside;
+    if (w->rounds > 0 && creases_crowd(w)) w->admission.below = far_outside;
+    weigh_crowds(w);
     result = run_passes(w, 1, 1, error);
   }
   w->admission.below = 1;
   w->rounds = 0;
+  weigh_crowds(w);
   return result;
 }
 
@@ -554,7 +575,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
             .layer = layer};
   w.population = count_population(layer);
   leave_out_sharp(&w, window);
-  if (layer->hold && !layer->patch) w.measure.weighs_from = window->again ? dire : -HUGE_VAL;
+  if (layer->hold && !layer->patch && window->again) w.measure.weighs_from = dire;
   const int workers = laves__workers(context);
   laves_result result = LAVES_OK;
   const bool flips = layer->scale || layer->hold;
