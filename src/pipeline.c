@@ -94,22 +94,26 @@ static laves_result make_mesh(laves__run *r, laves_mesh **mesh) {
 
 /* Where sizes vary or features are kept improvement may cost some per cent of a count that was asked for; then all is made again
  * for a count that is larger by as much. Where features crowd, that share jumps with the size: some sizes are tried, and in the
- * end the best of them is taken. Noise takes long, and a count says little there: it gets two more tries. */
+ * end the best of them is taken. Where much is outside the window each takes long: there it is the second, unless that is far
+ * off. */
 static laves_result count_again(laves__run *r, laves_mesh **mesh, bool *again) {
-  enum { RECOUNTS = 5, NOISE_RECOUNTS = 2 };
-  static const double tolerance = 0.025;
+  enum { RECOUNTS = 5, SLOW_RECOUNTS = 1 };
+  static const double tolerance = 0.025, far_off = 0.1;
+  static const double slow_share = 0.05; /* of the tetrahedra, outside the window */
   const laves_options *o = r->options;
   const double wished = o->tet_target ? (double)o->tet_target : (double)o->vertex_target;
   const double got = o->tet_target ? (double)(*mesh)->tet_count : (double)(*mesh)->vertex_count;
   *again = (r->sizes || r->frame.features) && has_target(o) && !r->settled && fabs(got / wished - 1) > tolerance;
   if (!*again) return LAVES_OK;
+  if (r->recounts == 0) r->recounts_max = RECOUNTS;
+  if ((double)laves__count_outside(r) > slow_share * (double)(*mesh)->tet_count) r->recounts_max = SLOW_RECOUNTS;
   if (r->recounts == 0 || fabs(log(got / wished)) < r->least_miss) {
     r->least_miss = fabs(log(got / wished));
     r->best_size = r->frame.size;
   }
   r->kept = got / r->counted;
-  r->settled = r->recounts++ >= (r->noise ? NOISE_RECOUNTS : RECOUNTS);
-  if (r->settled) *again = r->frame.size != r->best_size;
+  r->settled = r->recounts++ >= r->recounts_max;
+  if (r->settled) *again = r->frame.size != r->best_size && (r->recounts_max > SLOW_RECOUNTS || fabs(got / wished - 1) > far_off);
   if (!*again) return LAVES_OK;
   if (r->settled) r->frame.size = r->best_size;
   laves_mesh_free(*mesh);

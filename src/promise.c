@@ -29,18 +29,19 @@ static laves_result find_features(laves__run *r) {
   return result;
 }
 
-/* Boundary vertices are held to features, but for those where tets were cut. */
-static laves_result hold_features(laves__run *r) {
+/* Boundary vertices are held to features, but for those where tets were cut, and so many cells around. */
+static laves_result hold_features(laves__run *r, int cells) {
+  laves_result result = LAVES_OK;
   bool *in_zone = NULL;
   const size_t vertices = r->layer.vertex_count;
   laves__stage_begin(r);
   if (r->stuffed.vertices > 0) {
     in_zone = laves__alloc(r->context, vertices, sizeof *in_zone);
-    if (!in_zone) return laves__fail_memory(r->context, r->error);
-    laves__zone_vertices(&r->lattice, &r->layer, in_zone);
+    if (!in_zone || !laves__zone_vertices(&r->lattice, &r->layer, cells, in_zone))
+      result = laves__fail_memory(r->context, r->error);
   }
-  const laves_result result =
-      laves__keep_features(&r->frame, in_zone, !r->options->improve, &r->layer, &r->kept_features, r->error);
+  if (result == LAVES_OK)
+    result = laves__keep_features(&r->frame, in_zone, !r->options->improve, &r->layer, &r->kept_features, r->error);
   laves__free(r->context, in_zone, vertices, sizeof *in_zone);
   laves__stage_end(r, "features");
   return result;
@@ -67,10 +68,10 @@ laves_result laves__hold_boundary(laves__run *r) {
   if (result == LAVES_OK && r->rough && !r->frame.features) return laves__stuff_everything(r);
   if (result != LAVES_OK || !r->frame.features) return result;
   r->rough = false; /* features make it so */
-  result = hold_features(r);
+  result = hold_features(r, 0);
   if (result != LAVES_OK || !laves__may_mend(r) || !is_rougher(r, noise_share, noise_count)) return result;
   result = laves__stuff_everything(r); /* improvement would be long, and come to this in the end */
-  return result == LAVES_OK ? hold_features(r) : result;
+  return result == LAVES_OK ? hold_features(r, 0) : result;
 }
 
 /* Angles that are held while improving are this much, in degrees, inside the promised ones: rounding must not matter. */
@@ -100,7 +101,7 @@ static laves_result improve(laves__run *r, bool again) {
 
 /* Where more than this share of the layer is outside that window after improvement, and no few tets, features are the noise of a
  * surface rougher than the size (where creases crowd: at most a hundredth). */
-static const double unkept_share = 0.03;
+static const double unkept_share = 0.01;
 static const size_t unkept_count = 100;
 
 /* Where features come closer than the size allows, angles go before them: step by step vertices are let go of, and improved
@@ -177,13 +178,15 @@ static bool widen_zone(laves__run *r, int round, size_t broken, laves__known_lat
 }
 
 /* The boundary made anew by stuffing in the lattice's zone, and held to features. What is near the zone is grafted into the layer
- * as it was; where that does not fit, all of it is taken. */
-static laves_result make_zone(laves__run *r, const laves__known_lattice *known, laves__layer *improved) {
+ * as it was; where that does not fit, all of it is taken. Where the promise was broken again, all that is near is held to
+ * nothing: where features crowd, each round would break it in another place. */
+static laves_result make_zone(laves__run *r, int round, const laves__known_lattice *known, laves__layer *improved) {
+  enum { FREE_FROM = 2, FREE_CELLS = 4 }; /* rounds; one cell more than a graft takes at least */
   bool fits = false;
   *improved = r->layer;
   r->layer = (laves__layer){0};
   laves_result result = laves__stuff_zone(r);
-  if (result == LAVES_OK && r->frame.features) result = hold_features(r);
+  if (result == LAVES_OK && r->frame.features) result = hold_features(r, round >= FREE_FROM ? FREE_CELLS : 0);
   if (result != LAVES_OK) return result;
   laves__stage_begin(r);
   result = laves__graft(known, &r->lattice, &r->layer, improved, &fits, r->error);
@@ -195,9 +198,9 @@ static laves_result make_zone(laves__run *r, const laves__known_lattice *known, 
 }
 
 /* One round: stuffing in the zone, and what was made anew improved. */
-static laves_result mend_zone(laves__run *r, const laves__known_lattice *known) {
+static laves_result mend_zone(laves__run *r, int round, const laves__known_lattice *known) {
   laves__layer improved = {0};
-  laves_result result = make_zone(r, known, &improved);
+  laves_result result = make_zone(r, round, known, &improved);
   laves__layer_free(&improved);
   if (result == LAVES_OK) result = improve_layer(r);
   if (result == LAVES_OK) result = find_forced(r);
@@ -213,7 +216,7 @@ static laves_result mend_promise(laves__run *r) {
   size_t broken = result == LAVES_OK ? count_broken(r) : 0;
   if (laves__is_cancelled(r->context)) result = laves__fail_cancelled(r->error);
   for (int round = 0; result == LAVES_OK && round < ROUNDS && broken > 0; round++) {
-    result = widen_zone(r, round, broken, &known) ? mend_zone(r, &known) : laves__fail_memory(r->context, r->error);
+    result = widen_zone(r, round, broken, &known) ? mend_zone(r, round, &known) : laves__fail_memory(r->context, r->error);
     if (result == LAVES_OK) broken = count_broken(r);
     if (laves__is_cancelled(r->context)) result = laves__fail_cancelled(r->error);
   }

@@ -40,7 +40,7 @@ typedef struct laves__run {
   laves__stuff_counts stuffed;
   const laves__guarantee *guarantee; /* NULL: nothing is promised */
   double counted, kept;              /* tets or vertices before improvement, whichever are asked for; their share after it */
-  int recounts;                      /* how often all was made again for a count */
+  int recounts, recounts_max;        /* how often all was made again for a count, and how often it may be */
   double best_size, least_miss;      /* of those: the size that came nearest, and how far that is off, as a logarithm */
   bool settled;                      /* the size is that one, and is no longer corrected */
   int round;                         /* of refinement for the sake of the distance */
@@ -91,5 +91,7 @@ double laves__least_size(const laves__run *r);
 
 /* Fills the report: what was asked, what is there, with a sentence for what is not. LAVES_TARGET_MISSED, or why it can't tell. */
 laves_result laves__judge(laves__run *r, const laves_mesh *mesh);
+/* How many tetrahedra of the layer are outside the window that was asked for. */
+size_t laves__count_outside(const laves__run *r);
 
 #endif

@@ -7,6 +7,13 @@
 #include "run.h"
 #include "stuff/zone.h"
 
+size_t laves__count_outside(const laves__run *r) {
+  const laves_options *o = r->options;
+  const laves__window asked = {
+      .min_dihedral = o->min_dihedral, .max_dihedral = o->max_dihedral, .volume_length = o->volume_length};
+  return laves__improve_outside(&asked, &r->layer);
+}
+
 /* What was asked about parts of the input, and is not there or not as it may seem. */
 static void judge_parts(laves__run *r, const laves_mesh *mesh) {
   const laves_options *o = r->options;
@@ -134,9 +141,7 @@ laves_result laves__judge(laves__run *r, const laves_mesh *mesh) {
   report->relaxed_max = r->stuffed.relaxed_max * r->frame.size;
   report->off_surface = 0;
   for (size_t v = 0; v < r->layer.vertex_count; v++) report->off_surface += r->layer.off_surface[v] && r->layer.star[v].count > 0;
-  report->outside_window = laves__improve_outside(
-      &(laves__window){.min_dihedral = o->min_dihedral, .max_dihedral = o->max_dihedral, .volume_length = o->volume_length},
-      &r->layer);
+  report->outside_window = laves__count_outside(r);
   const size_t broken = r->guarantee ? laves__count_broken(r->guarantee, &r->layer, r->forced) : 0;
   report->peak_bytes = laves_context_peak_bytes(r->context);
   laves_result known = laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : judge_thin(r, mesh);

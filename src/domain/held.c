@@ -31,9 +31,12 @@ bool laves__hold_has_patch(const laves__features *f, laves__hold hold, int32_t p
   int32_t room[2];
   const int32_t *list;
   const int count = laves__hold_patches(f, hold, room, &list);
+  if (hold.kind == LAVES__HOLD_SURFACE) return true;
+  for (int i = 0; i < count; i++) /* nearly always it is one of them */
+    if (list[i] == patch) return true;
   for (int i = 0; i < count; i++)
     if (laves__patches_join(f, list[i], patch)) return true;
-  return hold.kind == LAVES__HOLD_SURFACE;
+  return false;
 }
 
 bool laves__holds_meet(const laves__features *f, laves__hold a, laves__hold b) {
@@ -80,6 +83,11 @@ static void add_common(common *c, int32_t patch) {
   if (c->count < COMMON_MAX) c->patch[c->count++] = patch;
 }
 
+/* Whether a patch of vertex `lead` goes with the two others. */
+static bool go_with(const laves__features *f, const laves__hold hold[3], int lead, int32_t patch) {
+  return laves__hold_has_patch(f, hold[(lead + 1) % 3], patch) && laves__hold_has_patch(f, hold[(lead + 2) % 3], patch);
+}
+
 /* The patches of any of three vertices that go with all three. */
 static common common_patches(const laves__features *f, const laves__hold hold[3]) {
   common c = {.free = true};
@@ -89,15 +97,22 @@ static common common_patches(const laves__features *f, const laves__hold hold[3]
     const int listed = laves__hold_patches(f, hold[lead], room, &list);
     if (hold[lead].kind != LAVES__HOLD_SURFACE) c.free = false;
     for (int k = 0; k < listed; k++)
-      if (laves__hold_has_patch(f, hold[(lead + 1) % 3], list[k]) && laves__hold_has_patch(f, hold[(lead + 2) % 3], list[k]))
-        add_common(&c, list[k]);
+      if (go_with(f, hold, lead, list[k])) add_common(&c, list[k]);
   }
   return c;
 }
 
 bool laves__face_is_legal(const laves__features *f, const laves__hold hold[3]) {
-  const common c = common_patches(f, hold);
-  return c.count > 0 || c.free;
+  bool free = true;
+  for (int lead = 0; lead < 3; lead++) {
+    int32_t room[2];
+    const int32_t *list;
+    const int listed = laves__hold_patches(f, hold[lead], room, &list);
+    free = free && hold[lead].kind == LAVES__HOLD_SURFACE;
+    for (int k = 0; k < listed; k++)
+      if (go_with(f, hold, lead, list[k])) return true;
+  }
+  return free;
 }
 
 /* How badly a face fits a patch. */

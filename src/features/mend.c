@@ -59,7 +59,7 @@ static int relabel(const laves__keeping *k, int32_t vertex) {
     laves__vec3 place;
     *hold = c.hold[i];
     const int illegal = laves__illegal_around(k, vertex);
-    if (illegal > fewest || !laves__held_place(k, vertex, *hold, &place)) continue;
+    if (illegal > fewest || (illegal == fewest && nearest == 0) || !laves__held_place(k, vertex, *hold, &place)) continue;
     const double way = v3_distance(place, k->start[vertex]);
     if (illegal == fewest && !(way < nearest)) continue;
     fewest = illegal;

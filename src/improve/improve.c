@@ -42,6 +42,7 @@ static const size_t crowd_min = 2000; /* tets; fewer never are a crowd */
 /* Creases crowd where more than this share, and this many, are bad. Then contraction while vertices are brought to creases is for
  * what is far outside, and steps are weighed. */
 static const double crease_crowd = 0.01;
+static const double first_crowd = 0.1; /* the same before anything is improved */
 static const size_t crease_crowd_min = 250;
 static const size_t freed_crowd_min = 500; /* tets; the same once some features were let go of, which leaves few */
 /* Where even more than this share is bad after one pass, the solid is noise at this size: smoothing goes on for one more pass
@@ -330,11 +331,14 @@ static bool is_crowded(const work *w, double share, size_t least) {
   return bad > least && (double)bad > share * (double)w->population;
 }
 
+/* Whether so much is so thin, or creases crowd so, that the window is out of reach. */
+static bool is_rough(const work *w) { return is_crowded(w, rough_share, crowd_min); }
+
 static bool creases_crowd(const work *w) { return is_crowded(w, crease_crowd, crease_crowd_min); }
 
 /* Whether all that a step touches is weighed is decided anew where vertices come home, and before each kind of work. */
-static void weigh_crowds(work *w) {
-  if (w->layer->hold) w->measure.weighs_from = creases_crowd(w) ? -HUGE_VAL : HUGE_VAL;
+static void weigh_crowds(work *w, double share) {
+  if (w->layer->hold) w->measure.weighs_from = is_crowded(w, share, crease_crowd_min) ? -HUGE_VAL : HUGE_VAL;
 }
 
 /* Patience is new for all that remains. */
@@ -345,7 +349,7 @@ static void forget(work *w) {
   }
 }
 
-/* What is still far outside is cured at any cost: the worst angle of a mesh counts for more than how many are outside by little. */
+/* What is still far outside is cured at any cost: the worst angle counts for more than how many are outside by little. */
 static laves_result mend_worst(work *w, laves_error *error) {
   enum { WORST_PASSES = 4 };
   w->measure.weighs_from = HUGE_VAL;
@@ -356,9 +360,10 @@ static laves_result mend_worst(work *w, laves_error *error) {
 
 /* The lattice's connectivity is good: smoothing does nearly all, contraction the rest. */
 static laves_result mend_tiling(work *w, bool brief, laves_error *error) {
+  brief = brief || (w->layer->hold && is_rough(w)); /* its vertices were smoothed while they were brought home */
   if (brief) w->admission.below = brief_admit;
   laves_result result = run_passes(w, 1, 1, error);
-  const bool rough = brief || is_crowded(w, rough_share, crowd_min);
+  const bool rough = brief || is_rough(w);
   if (result == LAVES_OK) result = run_passes(w, rough ? 1 : SMOOTH_PASSES - 1, 1, error);
   if (result == LAVES_OK) settle_all(w, settle_floor);
   const bool crowded = is_crowded(w, crowd, crowd_min);
@@ -370,7 +375,7 @@ static laves_result mend_tiling(work *w, bool brief, laves_error *error) {
   w->rounds = THOROUGH_ROUNDS;
   w->admission.below = thorough_below;
   forget(w);
-  weigh_crowds(w);
+  weigh_crowds(w, crease_crowd);
   const int patience = is_crowded(w, 0, crowd_min) ? 1 : 2;
   if (result == LAVES_OK && !crowded && !rough) result = run_passes(w, CONTRACT_PASSES, patience, error);
   if (result == LAVES_OK && w->layer->hold && !rough) result = mend_worst(w, error);
@@ -393,7 +398,7 @@ static laves_result mend_graded(work *w, laves_error *error) {
   w->admission.below = 1;
   if (result == LAVES_OK && !crowded) result = run_passes(w, CROWD_PASSES, 2, error);
   w->rounds = THOROUGH_ROUNDS;
-  weigh_crowds(w);
+  weigh_crowds(w, crease_crowd);
   w->admission.below = crowded ? far_outside : thorough_below;
   forget(w);
   if (result == LAVES_OK && !rough) result = run_passes(w, CONTRACT_PASSES, 2, error);
@@ -484,17 +489,22 @@ static void leave_out_sharp(work *w, const laves__window *window) {
 static laves_result bring_home(work *w, laves_error *error) {
   enum { ROUNDS = 6, SMOOTH_ROUNDS = 2 };
   static const double home_floor = 0.05; /* quality that coming home may cost: about 9 degrees */
+  weigh_crowds(w, first_crowd);
   laves_result result = run_passes(w, 1, 1, error);
   for (int round = 0; result == LAVES_OK && round < ROUNDS && count_off(w) > 0; round++) {
     settle_all(w, home_floor);
+    w->admission.below = 1;
     w->rounds = round >= SMOOTH_ROUNDS;
-    if (w->rounds > 0 && creases_crowd(w)) w->admission.below = far_outside;
-    weigh_crowds(w);
+    if (is_rough(w))
+      w->admission.below = w->rounds > 0 ? rough_admit : brief_admit;
+    else if (w->rounds > 0 && creases_crowd(w))
+      w->admission.below = far_outside;
+    weigh_crowds(w, crease_crowd);
     result = run_passes(w, 1, 1, error);
   }
   w->admission.below = 1;
   w->rounds = 0;
-  weigh_crowds(w);
+  weigh_crowds(w, crease_crowd);
   return result;
 }
 
@@ -502,7 +512,7 @@ static laves_result bring_home(work *w, laves_error *error) {
  * nothing else kept the others from the window: then all that is bad. */
 static laves_result mend_again(work *w, bool noise, laves_error *error) {
   settle_all(w, settle_floor);
-  w->admission.below = far_outside;
+  w->admission.below = is_rough(w) && !noise ? rough_admit : far_outside;
   laves_result result = run_passes(w, SMOOTH_PASSES, 1, error);
   w->rounds = THOROUGH_ROUNDS;
   if (is_crowded(w, 0, freed_crowd_min)) w->worthwhile = worthwhile_again;
@@ -539,6 +549,18 @@ static size_t count_population(const laves__layer *layer) {
   if (!layer->fresh) return layer->tet_count;
   for (size_t t = 0; t < layer->tet_count; t++) count += layer->tet[t][0] >= 0 && laves__layer_is_fresh(layer, (int32_t)t);
   return count;
+}
+
+static size_t count_dead(const laves__layer *layer) {
+  size_t count = 0;
+  for (size_t t = 0; t < layer->tet_count; t++) count += layer->tet[t][0] < 0;
+  return count;
+}
+
+/* Room for flips: as many dead tets as they may want, those of earlier work among them; false when memory is short. */
+static bool make_spare(laves__layer *layer, size_t population) {
+  const size_t wanted = population / spare_share + spare_min, dead = count_dead(layer);
+  return dead >= wanted || laves__layer_extend(layer, wanted - dead);
 }
 
 static size_t count_fresh_vertices(const laves__layer *layer) {
@@ -579,7 +601,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   const int workers = laves__workers(context);
   laves_result result = LAVES_OK;
   const bool flips = layer->scale || layer->hold;
-  if (flips && !laves__layer_extend(layer, w.population / spare_share + spare_min)) return laves__fail_memory(context, error);
+  if (flips && !make_spare(layer, w.population)) return laves__fail_memory(context, error);
   if (!layer->fresh) w.population = layer->tet_count; /* the spare ones, too */
   const size_t extra = layer->hold ? count_fresh_vertices(layer) / spare_vertex_share + spare_vertex_min : 0;
   w.first_spare_vertex = layer->vertex_count;

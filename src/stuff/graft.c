@@ -283,8 +283,9 @@ static void draw_differences(graft *g) {
 
 /* ---- vertices on the border ---- */
 
-static bool same_hold(laves__hold a, laves__hold b) {
-  return a.kind == b.kind && (a.kind == LAVES__HOLD_SURFACE || a.id == b.id);
+/* Whether a vertex may be held by what the old layer says. What is held to nothing goes with all. */
+static bool may_be_held(laves__hold made, laves__hold old) {
+  return made.kind == LAVES__HOLD_SURFACE || (made.kind == old.kind && made.id == old.id);
 }
 
 /* Far vertices must be what they are in the lattice as it is now: so the layer's rim towards the interior is the lattice's. */
@@ -316,7 +317,7 @@ static void draw_corners(graft *g) {
       const int32_t v = s->twin[tet[k]];
       const bool same = v >= 0 && lives(g->old.layer, v) &&
                         (s->layer->depth[tet[k]] != 0 || g->tries >= HOLD_TRIES ||
-                         same_hold(laves__layer_hold(s->layer, tet[k]), laves__layer_hold(g->old.layer, v)));
+                         may_be_held(laves__layer_hold(s->layer, tet[k]), laves__layer_hold(g->old.layer, v)));
       if (!same) draw_near(g, &g->made, tet[k]);
       fits &= same;
     }

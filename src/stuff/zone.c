@@ -1,6 +1,8 @@
 /* Zones grow from the tets that break the promise: first some cells around them, in the end the whole component. */
 #include "stuff/zone.h"
 
+#include <string.h>
+
 #include "mesh/shape_batch.h"
 
 static const uint32_t all_sites = (UINT32_C(1) << LAVES__C15_SITES) - 1;
@@ -116,12 +118,33 @@ void laves__zone_walls(const laves__layer *layer, const laves__components *walls
   }
 }
 
-void laves__zone_vertices(const laves__lattice *lattice, const laves__layer *layer, bool *in_zone) {
-  for (size_t v = 0; v < layer->vertex_count; v++) {
-    const uint32_t id = layer->origin[v];
-    in_zone[v] = layer->depth[v] == 0 &&
-                 (id == LAVES__NO_ORIGIN || (lattice->record[id / LAVES__C15_SITES].zone >> id % LAVES__C15_SITES & 1));
+/* Marks the cells around those that are marked. */
+static void widen(const laves__lattice *lattice, const bool *marked, bool *wider) {
+  for (size_t i = 0; i < lattice->record_count; i++) {
+    wider[i] = marked[i];
+    for (int k = 0; k < 27 && !wider[i]; k++)
+      wider[i] = lattice->record[i].around[k] >= 0 && marked[lattice->record[i].around[k]];
   }
+}
+
+bool laves__zone_vertices(const laves__lattice *lattice, const laves__layer *layer, int rings, bool *in_zone) {
+  const size_t records = lattice->record_count;
+  bool *near = laves__alloc(lattice->context, records, sizeof *near),
+       *wider = laves__alloc(lattice->context, records, sizeof *wider);
+  const bool memory = near && wider;
+  for (size_t i = 0; memory && i < records; i++) near[i] = lattice->record[i].zone != 0;
+  for (int ring = 0; memory && ring < rings; ring++) {
+    widen(lattice, near, wider);
+    memcpy(near, wider, records * sizeof *near);
+  }
+  for (size_t v = 0; memory && v < layer->vertex_count; v++) {
+    const uint32_t id = layer->origin[v];
+    const bool is_cut = id == LAVES__NO_ORIGIN || (lattice->record[id / LAVES__C15_SITES].zone >> id % LAVES__C15_SITES & 1);
+    in_zone[v] = layer->depth[v] == 0 && (is_cut || (rings > 0 && near[id / LAVES__C15_SITES]));
+  }
+  laves__free(lattice->context, near, records, sizeof *near);
+  laves__free(lattice->context, wider, records, sizeof *wider);
+  return memory;
 }
 
 bool laves__zone_components(laves__lattice *lattice) {

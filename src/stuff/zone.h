@@ -28,8 +28,9 @@ void laves__zone_walls(const laves__layer *layer, const laves__components *walls
 void laves__find_broken_walls(const laves__guarantee *guarantee, const laves__layer *layer, const bool *forced,
                               const laves__components *walls, bool *broken);
 
-/* Which vertices of the layer stand where tets are cut: in_zone[layer->vertex_count]. */
-void laves__zone_vertices(const laves__lattice *lattice, const laves__layer *layer, bool *in_zone);
+/* Which boundary vertices of the layer stand where tets are cut, or in cells that are at most `rings` from one with such a place:
+ * in_zone[layer->vertex_count]. False when memory is short. */
+bool laves__zone_vertices(const laves__lattice *lattice, const laves__layer *layer, int rings, bool *in_zone);
 
 /* Puts in the zone whole components: every site of the records that are joined to a zone by neighbouring cells. No tet then
  * has corners both in the zone and beyond it. False when memory is short. */
