@@ -99,14 +99,16 @@ static laves_result make_mesh(laves__run *r, laves_mesh **mesh) {
 static laves_result count_again(laves__run *r, laves_mesh **mesh, bool *again) {
   enum { RECOUNTS = 5, SLOW_RECOUNTS = 1 };
   static const double tolerance = 0.025, far_off = 0.1;
-  static const double slow_share = 0.05; /* of the tetrahedra, outside the window */
+  static const double slow_share = 0.05; /* of the tetrahedra, outside the window, the first time */
   const laves_options *o = r->options;
   const double wished = o->tet_target ? (double)o->tet_target : (double)o->vertex_target;
   const double got = o->tet_target ? (double)(*mesh)->tet_count : (double)(*mesh)->vertex_count;
   *again = (r->sizes || r->frame.features) && has_target(o) && !r->settled && fabs(got / wished - 1) > tolerance;
   if (!*again) return LAVES_OK;
-  if (r->recounts == 0) r->recounts_max = RECOUNTS;
-  if ((double)laves__count_outside(r) > slow_share * (double)(*mesh)->tet_count) r->recounts_max = SLOW_RECOUNTS;
+  if (r->recounts == 0) {
+    const bool slow = o->improve && (double)laves__count_outside(r) > slow_share * (double)(*mesh)->tet_count;
+    r->recounts_max = slow ? SLOW_RECOUNTS : RECOUNTS;
+  }
   if (r->recounts == 0 || fabs(log(got / wished)) < r->least_miss) {
     r->least_miss = fabs(log(got / wished));
     r->best_size = r->frame.size;

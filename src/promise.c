@@ -100,7 +100,7 @@ static laves_result improve(laves__run *r, bool again) {
 }
 
 /* Where more than this share of the layer is outside that window after improvement, and no few tets, features are the noise of a
- * surface rougher than the size (where creases crowd: at most a hundredth). */
+ * surface rougher than the size, or crowd too much. */
 static const double unkept_share = 0.01;
 static const size_t unkept_count = 100;
 
@@ -178,10 +178,10 @@ static bool widen_zone(laves__run *r, int round, size_t broken, laves__known_lat
 }
 
 /* The boundary made anew by stuffing in the lattice's zone, and held to features. What is near the zone is grafted into the layer
- * as it was; where that does not fit, all of it is taken. Where the promise was broken again, all that is near is held to
- * nothing: where features crowd, each round would break it in another place. */
+ * as it was; where that does not fit, all of it is taken. In later rounds nothing that is made near a zone is held: where
+ * features crowd, each round would break the promise in another place. */
 static laves_result make_zone(laves__run *r, int round, const laves__known_lattice *known, laves__layer *improved) {
-  enum { FREE_FROM = 2, FREE_CELLS = 4 }; /* rounds; one cell more than a graft takes at least */
+  enum { FREE_FROM = 2, FREE_CELLS = 4 }; /* rounds; about what a graft takes at least */
   bool fits = false;
   *improved = r->layer;
   r->layer = (laves__layer){0};

@@ -97,8 +97,7 @@ bool laves__parallel_for(laves_context *context, const char *phase, size_t count
 int laves__workers(const laves_context *context);
 
 /* The sum of what fn returns for pieces of [0, count), in parallel; a count is a sum, too. Pieces are the same and are added in
- * the same order for any number of threads, so the bits are as well. After a cancel, which `phase` is for as above, it is a part.
- */
+ * the same order for any number of threads, so the bits are as well. After a cancel, which `phase` is for as above, it is 0. */
 typedef double laves__sum_fn(const void *user, size_t begin, size_t end);
 double laves__parallel_sum(laves_context *context, const char *phase, size_t count, laves__sum_fn *fn, const void *user);
 

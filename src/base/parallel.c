@@ -187,8 +187,8 @@ double laves__parallel_sum(laves_context *context, const char *phase, size_t cou
   s.piece = (count + PIECES - 1) / PIECES;
   if (s.piece < PIECE_MIN) s.piece = PIECE_MIN;
   const size_t pieces = (count + s.piece - 1) / s.piece;
-  laves__parallel_for(context, phase, pieces, 1, sum_pieces, &s);
   double sum = 0;
+  if (!laves__parallel_for(context, phase, pieces, 1, sum_pieces, &s)) return 0;
   for (size_t i = 0; i < pieces; i++) sum += s.sum[i];
   return sum;
 }

@@ -74,7 +74,6 @@ enum { COMMON_MAX = 8 };
 typedef struct common {
   int32_t patch[COMMON_MAX];
   int count;
-  bool free; /* all three are held to nothing */
 } common;
 
 static void add_common(common *c, int32_t patch) {
@@ -90,12 +89,11 @@ static bool go_with(const laves__features *f, const laves__hold hold[3], int lea
 
 /* The patches of any of three vertices that go with all three. */
 static common common_patches(const laves__features *f, const laves__hold hold[3]) {
-  common c = {.free = true};
+  common c = {.count = 0};
   for (int lead = 0; lead < 3; lead++) {
     int32_t room[2];
     const int32_t *list;
     const int listed = laves__hold_patches(f, hold[lead], room, &list);
-    if (hold[lead].kind != LAVES__HOLD_SURFACE) c.free = false;
     for (int k = 0; k < listed; k++)
       if (go_with(f, hold, lead, list[k])) add_common(&c, list[k]);
   }

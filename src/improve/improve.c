@@ -9,10 +9,11 @@
  *
  * First passes only smooth; when that no longer helps, contraction joins in; the few that are still clearly outside are
  * treated once more with more smoothing around each contraction. On a graded background flips join in from the first. A flip,
- * contraction or split is kept when the worst of what it touches rises. Where creases crowd, all that it touches must also lack
- * less of what is asked, taken together: one that is bad would else be cured at the cost of many, again and again. (Not for what
- * is worst once features were let go of: the promise is near, and where it is broken all around is made anew. And not where the
- * boundary is given, for which there is a schedule that goes from the worst to the others.)
+ * contraction or split is kept when the worst of what it touches rises. Where creases crowd, or are noise, all that it touches
+ * must also lack less of what is asked, taken together: one that is bad would else be cured at the cost of many, again and again.
+ * (Not for what is far outside in the end, nor for what is worst once features were let go of: the promise is near, and where it
+ * is broken all around is made anew. And not where the boundary is given, for which there is a schedule that goes from the worst
+ * to the others.)
  *
  * Where the layer has a mask of what is fresh, only tets with such a vertex are worked on; what is known of the others is that
  * nothing helped. */
@@ -331,14 +332,21 @@ static bool is_crowded(const work *w, double share, size_t least) {
   return bad > least && (double)bad > share * (double)w->population;
 }
 
-/* Whether so much is so thin, or creases crowd so, that the window is out of reach. */
+/* Whether so much is bad, since walls are thin or creases crowd, that the window is out of reach. */
 static bool is_rough(const work *w) { return is_crowded(w, rough_share, crowd_min); }
 
 static bool creases_crowd(const work *w) { return is_crowded(w, crease_crowd, crease_crowd_min); }
 
-/* Whether all that a step touches is weighed is decided anew where vertices come home, and before each kind of work. */
+/* Whether more creases were dropped as noise than there are: those that are left are hardly better. */
+static bool is_noisy(const work *w) {
+  const laves__features *f = w->frame->features;
+  return f && f->dropped_count > f->crease_count;
+}
+
+/* Whether all that a step touches is weighed is decided anew where vertices come home, and before each kind of work: where many
+ * are bad of those that are worked on. On noise it always is. */
 static void weigh_crowds(work *w, double share) {
-  if (w->layer->hold) w->measure.weighs_from = is_crowded(w, share, crease_crowd_min) ? -HUGE_VAL : HUGE_VAL;
+  if (w->layer->hold) w->measure.weighs_from = is_noisy(w) || is_crowded(w, share, crease_crowd_min) ? -HUGE_VAL : HUGE_VAL;
 }
 
 /* Patience is new for all that remains. */
@@ -355,6 +363,7 @@ static laves_result mend_worst(work *w, laves_error *error) {
   w->measure.weighs_from = HUGE_VAL;
   w->admission.below = far_outside;
   forget(w);
+  for (size_t t = 0; t < w->layer->tet_count; t++) w->stuck[t] = HUGE_VAL; /* flips were weighed, too */
   return run_passes(w, WORST_PASSES, 1, error);
 }
 
@@ -378,7 +387,7 @@ static laves_result mend_tiling(work *w, bool brief, laves_error *error) {
   weigh_crowds(w, crease_crowd);
   const int patience = is_crowded(w, 0, crowd_min) ? 1 : 2;
   if (result == LAVES_OK && !crowded && !rough) result = run_passes(w, CONTRACT_PASSES, patience, error);
-  if (result == LAVES_OK && w->layer->hold && !rough) result = mend_worst(w, error);
+  if (result == LAVES_OK && w->layer->hold && !rough && !is_noisy(w)) result = mend_worst(w, error);
   if (result == LAVES_OK) peel_all(w);
   return result;
 }
@@ -485,7 +494,7 @@ static void leave_out_sharp(work *w, const laves__window *window) {
 
 /* Creases and corners come first: their vertices go where they belong, as far as tets allow, and smoothing and contraction make
  * room for the rest of the way. Where creases crowd, contraction is for tets far outside only: the others can't all be cured
- * before everything is in its place, and what is tried spoils their neighbours. */
+ * before everything is in its place, and what is tried spoils their neighbours. Where nearly all is bad even less is tried. */
 static laves_result bring_home(work *w, laves_error *error) {
   enum { ROUNDS = 6, SMOOTH_ROUNDS = 2 };
   static const double home_floor = 0.05; /* quality that coming home may cost: about 9 degrees */
@@ -508,7 +517,8 @@ static laves_result bring_home(work *w, laves_error *error) {
   return result;
 }
 
-/* After features were let go of: only what is far outside, and what was freed, which is off the surface. Where that was noise,
+/* After features were let go of: only what is far outside (where nearly all is bad, very far), and what was freed, which is off
+ * the surface. Where that was noise,
  * nothing else kept the others from the window: then all that is bad. */
 static laves_result mend_again(work *w, bool noise, laves_error *error) {
   settle_all(w, settle_floor);

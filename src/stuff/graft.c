@@ -304,7 +304,8 @@ static laves__vec3 place_of(const graft *g, int32_t v) {
   return g->made.near[v] ? g->made.layer->position[v] : g->old.layer->position[g->made.twin[v]];
 }
 
-/* Far corners of the tets that are taken must live at the other side and be held by the same, and the tets must be positive. */
+/* Far corners of the tets that are taken must live at the other side and be held by the same, or by nothing in what was made, and
+ * the tets must be positive. */
 static void draw_corners(graft *g) {
   const side *s = &g->made;
   for (size_t i = 0; i < s->count; i++) {
