@@ -518,8 +518,7 @@ static laves_result bring_home(work *w, laves_error *error) {
 }
 
 /* After features were let go of: only what is far outside (where nearly all is bad, very far), and what was freed, which is off
- * the surface. Where that was noise,
- * nothing else kept the others from the window: then all that is bad. */
+ * the surface. Where that was noise, nothing else kept the others from the window: then all that is bad. */
 static laves_result mend_again(work *w, bool noise, laves_error *error) {
   settle_all(w, settle_floor);
   w->admission.below = is_rough(w) && !noise ? rough_admit : far_outside;
