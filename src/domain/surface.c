@@ -290,7 +290,7 @@ static double central_volume(const laves__surface *s) {
 static bool encloses_nothing(const laves__surface *s, const laves_domain_info *info) {
   if (!s->open) return !(info->volume > 0);
   return s->rim_tree.count > 3 * s->all_face_count / 2 ||
-         laves__surface_inside_share(s, box_of(s->points, s->point_count)) < enclosed_min;
+         !laves__surface_encloses(s, box_of(s->points, s->point_count), enclosed_min);
 }
 
 /* What is wrong with the surface as it was given. */

@@ -101,17 +101,22 @@ void laves__bvh_shoot(const laves__bvh *bvh, laves__vec3 origin, laves__vec3 dir
 
 /* ---- winding number ---- */
 
-/* What the far field of a node needs: the vector area and its first moment about the centre. */
+/* What the far field of a node or leaf needs: the vector area and its first moment about the centre. */
 typedef struct laves__moment {
   laves__vec3 centre, area_vector;
   double first[6]; /* xx yy zz, and the sums xy yz zx of both orders */
-  double area, radius, radius2;
+  double area, radius;
 } laves__moment;
+
+/* Those of the four children of a node, side by side. */
+typedef struct laves__moments {
+  double centre[3][4], area_vector[3][4], first[6][4], radius2[4];
+} laves__moments;
 
 typedef struct laves__winding {
   laves__bvh *bvh;
-  laves__moment *moments; /* [moment_count], one for each node */
-  size_t moment_count;
+  laves__moments *moments; /* [node_count] of the children of each node */
+  size_t node_count;
   double far_factor; /* radii of a node beyond which its expansion serves; may be changed */
 } laves__winding;
 
@@ -309,8 +314,8 @@ bool laves__surface_stitch(laves__surface *s, bool *parted);
 /* Which faces bound {winding number > level} somewhere (keep); marks those that do so in part. */
 bool laves__surface_judge_open(laves__surface *s, bool *keep);
 bool laves__surface_build_rim(laves__surface *s);
-/* Share of a grid of points of the box that lies inside. */
-double laves__surface_inside_share(const laves__surface *s, laves__box3 box);
+/* Whether this share of a grid of points of the box lies inside, or more. */
+bool laves__surface_encloses(const laves__surface *s, laves__box3 box, double share);
 /* Winding number less one half. */
 double laves__open_excess(const laves__surface *s, laves__vec3 p);
 /* Whether the rim is so far from p that a plain face at `distance` is all that matters. */
@@ -322,8 +327,8 @@ double laves__open_cap_guess(const laves__surface *s, laves__vec3 p, double e, d
 /* The cap's point along the steepest direction, within reach; guess: its estimated distance. */
 bool laves__open_project(const laves__surface *s, laves__vec3 p, double e, double guess, laves__vec3 uphill, double reach,
                          laves__vec3 *foot, laves__vec3 *normal);
-/* Whether neither triangles nor caps pass through the ball. */
-bool laves__open_ball_is_certain(const laves__surface *s, laves__vec3 p, double e, double radius);
+/* The side of a ball through which neither triangles nor caps are certain to pass. */
+laves__side laves__open_side(const laves__surface *s, laves__vec3 p, double radius);
 
 /* ---- samples ---- */
 

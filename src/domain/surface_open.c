@@ -30,7 +30,7 @@ static const double on_cap = 1e-9;
 /* Diagonals: brackets of the cap this narrow are searched no further. */
 static const double narrow = 1e-12;
 
-enum { SAMPLES = 32, CAP_STEPS = 60, EXPANSIONS = 6, LONG_RIM = 4096 };
+enum { SAMPLES = 32, ROUNDS = 8, CAP_STEPS = 60, EXPANSIONS = 6, LONG_RIM = 4096 };
 
 /* ---- building ---- */
 
@@ -114,7 +114,8 @@ bool laves__surface_build_rim(laves__surface *s) {
 typedef struct sampling {
   const laves__surface *s;
   laves__box3 box;
-  uint32_t *inside; /* [SAMPLES] for each layer */
+  int first;        /* layer of this round; the others follow at steps of ROUNDS */
+  uint32_t *inside; /* [SAMPLES / ROUNDS] in each layer of the round */
 } sampling;
 
 static void sample_layers(void *user, size_t begin, size_t end, int worker) {
@@ -122,20 +123,25 @@ static void sample_layers(void *user, size_t begin, size_t end, int worker) {
   (void)worker;
   const laves__vec3 width = v3_scale(v3_sub(m->box.upper, m->box.lower), 1.0 / SAMPLES);
   for (size_t k = begin; k < end; k++) {
+    const double x = (m->first + (int)k * ROUNDS + 0.5) * width.x;
     m->inside[k] = 0;
     for (int i = 0; i < SAMPLES * SAMPLES; i++) {
-      const laves__vec3 at = v3(((double)k + 0.5) * width.x, (i / SAMPLES + 0.5) * width.y, (i % SAMPLES + 0.5) * width.z);
+      const laves__vec3 at = v3(x, (i / SAMPLES + 0.5) * width.y, (i % SAMPLES + 0.5) * width.z);
       m->inside[k] += laves__winding_number(&m->s->winding, v3_add(m->box.lower, at), LAVES__NONE, LAVES__NONE) > m->s->level;
     }
   }
 }
 
-double laves__surface_inside_share(const laves__surface *s, laves__box3 box) {
-  uint32_t inside[SAMPLES] = {0}, sum = 0;
-  sampling m = {s, box, inside};
-  laves__parallel_for(s->context, "surface", SAMPLES, 1, sample_layers, &m);
-  for (int k = 0; k < SAMPLES; k++) sum += inside[k];
-  return (double)sum / (SAMPLES * SAMPLES * SAMPLES);
+/* A few layers at a time, since those of a solid's surface soon tell. */
+bool laves__surface_encloses(const laves__surface *s, laves__box3 box, double share) {
+  uint32_t inside[SAMPLES / ROUNDS] = {0}, sum = 0;
+  for (int first = 0; first < ROUNDS; first++) {
+    sampling m = {s, box, first, inside};
+    laves__parallel_for(s->context, "surface", SAMPLES / ROUNDS, 1, sample_layers, &m);
+    for (int k = 0; k < SAMPLES / ROUNDS; k++) sum += inside[k];
+    if (sum >= share * (SAMPLES * SAMPLES * SAMPLES)) return true;
+  }
+  return false;
 }
 
 /* ---- asking ---- */
@@ -263,10 +269,14 @@ static double steepest(const laves__surface *s, laves__vec3 p, double radius) {
   return sum / four_pi;
 }
 
-bool laves__open_ball_is_certain(const laves__surface *s, laves__vec3 p, double e, double radius) {
-  if (!(fabs(e) > winding_error)) return false;
+/* The number is asked last: it costs several searches. */
+laves__side laves__open_side(const laves__surface *s, laves__vec3 p, double radius) {
   laves__nearest n = {radius * radius * (1 + 1e-9), LAVES__NONE};
   laves__bvh_nearest(s->winding.bvh, p, &n);
-  if (n.slot != LAVES__NONE) return false;
-  return fabs(e) > radius * steepest(s, p, radius) + winding_error;
+  if (n.slot != LAVES__NONE) return LAVES__UNDECIDED;
+  const double change = radius * steepest(s, p, radius) + winding_error;
+  if (!isfinite(change)) return LAVES__UNDECIDED;
+  const double e = excess(s, p);
+  if (!(fabs(e) > change)) return LAVES__UNDECIDED;
+  return e > 0 ? LAVES__INSIDE : LAVES__OUTSIDE;
 }

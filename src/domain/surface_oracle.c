@@ -150,12 +150,6 @@ static bool open_project(const laves__surface *s, laves__vec3 p, double reach, u
   return true;
 }
 
-static laves__side open_side(const laves__surface *s, laves__vec3 p, double reach) {
-  const double e = laves__open_excess(s, p);
-  if (!laves__open_ball_is_certain(s, p, e, reach)) return LAVES__UNDECIDED;
-  return e > 0 ? LAVES__INSIDE : LAVES__OUTSIDE;
-}
-
 /* ---- the oracle ---- */
 
 static double signed_distance(const laves__surface *s, laves__vec3 p, const laves__nearest *n) {
@@ -254,7 +248,7 @@ bool laves__surface_project_part(const laves__surface *s, const laves__part *par
 static laves__side side(const void *self, laves__vec3 centre, double radius, laves__vec3 half) {
   const laves__surface *s = self;
   const double reach = fmin(radius, v3_norm(half));
-  if (s->open) return open_side(s, centre, reach);
+  if (s->open) return laves__open_side(s, centre, reach);
   double phi;
   evaluate(self, 1, &centre, &phi, NULL);
   /* The margin is for the rounding of distances. */
