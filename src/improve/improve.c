@@ -11,9 +11,9 @@
  * treated once more with more smoothing around each contraction. On a graded background flips join in from the first. A flip,
  * contraction or split is kept when the worst of what it touches rises. Where creases crowd, or are noise, all that it touches
  * must also lack less of what is asked, taken together: one that is bad would else be cured at the cost of many, again and again.
- * (Not for what is far outside in the end, nor for what is worst once features were let go of: the promise is near, and where it
- * is broken all around is made anew. And not where the boundary is given, for which there is a schedule that goes from the worst
- * to the others.)
+ * (Not for what is far outside in the end, around which, where it is little, all is made better than is asked; nor for what is
+ * worst once features were let go of: the promise is near, and where it is broken all around is made anew. And not where the
+ * boundary is given, for which there is a schedule that goes from the worst to the others.)
  *
  * Where the layer has a mask of what is fresh, only tets with such a vertex are worked on; what is known of the others is that
  * nothing helped. */
@@ -57,6 +57,8 @@ static const double worthwhile_again = 0.1; /* the same for what is left once fe
 static const double thorough_below = 0.985; /* quality below which the few that remain get more patience */
 static const double dire = 0.37;            /* quality: about 25 to 146 degrees */
 static const double far_outside = 0.75;     /* quality: about 36 to 131 degrees for the standard window */
+static const double well_outside = 0.8;     /* quality: about 37 to 129 degrees */
+static const double room_target = 1.2;      /* quality that smoothing aims at where room was made */
 static const size_t wall_count = 200;       /* bad ones; fewer get all the patience there is */
 static const double graded_crowd = 0.1;     /* what `crowd` is on a graded background, after flips */
 static const double given_crowd = 0.05;     /* what `crowd` is in the mesh of another program */
@@ -357,14 +359,58 @@ static void forget(work *w) {
   }
 }
 
-/* What is still far outside is cured at any cost: the worst angle counts for more than how many are outside by little. */
-static laves_result mend_worst(work *w, laves_error *error) {
+/* Marks what shares a vertex with a tet below a quality. */
+static void mark_near(const work *w, double below, uint8_t *near) {
+  for (size_t t = 0; t < w->layer->tet_count; t++) {
+    const int32_t *v = w->layer->tet[t];
+    if (v[0] < 0 || w->layer->quality[t] >= below) continue;
+    for (int k = 0; k < 4; k++)
+      for (int i = 0; i < w->layer->star[v[k]].count; i++) near[w->layer->star[v[k]].tet[i]] = 1;
+  }
+}
+
+/* What is around the worst is made better than is asked, which leaves them more to move in. */
+static laves_result make_room(work *w, double below, laves_error *error) {
+  enum { ROOM_PASSES = 2 };
+  static const double ample = 1.5; /* quality */
+  laves_context *context = w->layer->context;
+  uint8_t *near = laves__alloc_zeroed(context, w->layer->tet_count, 1);
+  if (!near) return laves__fail_memory(context, error);
+  mark_near(w, below, near);
+  w->admission.near = near;
+  w->admission.below = w->target = ample;
+  w->rounds = 1;
+  forget(w);
+  const laves_result result = run_passes(w, ROOM_PASSES, ROOM_PASSES, error);
+  laves__free(context, near, w->layer->tet_count, 1);
+  w->admission.near = NULL;
+  return result;
+}
+
+/* What is below a quality, as if nothing had been tried. */
+static laves_result start_over(work *w, double below, double target, laves_error *error) {
   enum { WORST_PASSES = 4 };
-  w->measure.weighs_from = HUGE_VAL;
-  w->admission.below = far_outside;
+  w->admission.below = below;
+  w->target = target;
+  w->rounds = THOROUGH_ROUNDS;
   forget(w);
   for (size_t t = 0; t < w->layer->tet_count; t++) w->stuck[t] = HUGE_VAL; /* flips were weighed, too */
   return run_passes(w, WORST_PASSES, 1, error);
+}
+
+/* What is still far outside is cured at any cost: the worst angle counts for more than how many are outside by little. Where few
+ * are left outside by less, room is made for them. */
+static laves_result mend_worst(work *w, laves_error *error) {
+  w->measure.weighs_from = HUGE_VAL;
+  laves_result result = start_over(w, far_outside, 1, error);
+  if (result != LAVES_OK) return result;
+  w->admission.below = well_outside;
+  const size_t count = count_bad(w);
+  if (count == 0 || count > wall_count) return LAVES_OK;
+  result = make_room(w, well_outside, error);
+  if (result == LAVES_OK) result = start_over(w, well_outside, room_target, error);
+  w->target = 1;
+  return result;
 }
 
 /* The lattice's connectivity is good: smoothing does nearly all, contraction the rest. */
@@ -415,36 +461,6 @@ static laves_result mend_graded(work *w, laves_error *error) {
   return result;
 }
 
-/* Marks what shares a vertex with a tet below a quality. */
-static void mark_near(const work *w, double below, uint8_t *near) {
-  for (size_t t = 0; t < w->layer->tet_count; t++) {
-    const int32_t *v = w->layer->tet[t];
-    if (v[0] < 0 || w->layer->quality[t] >= below) continue;
-    for (int k = 0; k < 4; k++)
-      for (int i = 0; i < w->layer->star[v[k]].count; i++) near[w->layer->star[v[k]].tet[i]] = 1;
-  }
-}
-
-/* What is around the worst is made better than is asked, which leaves them more to move in. */
-static laves_result make_room(work *w, double below, laves_error *error) {
-  enum { ROOM_PASSES = 2 };
-  static const double ample = 1.5; /* quality */
-  laves_context *context = w->layer->context;
-  laves_result result = laves__blocks_end(&w->blocks, w->layer, error);
-  if (result != LAVES_OK) return result;
-  uint8_t *near = laves__alloc_zeroed(context, w->layer->tet_count, 1);
-  if (!near) return laves__fail_memory(context, error);
-  mark_near(w, below, near);
-  w->admission.near = near;
-  w->admission.below = w->target = ample;
-  w->rounds = 1;
-  forget(w);
-  result = run_passes(w, ROOM_PASSES, ROOM_PASSES, error);
-  laves__free(context, near, w->layer->tet_count, 1);
-  w->admission.near = NULL;
-  return result;
-}
-
 /* The mesh of another program: a quarter of it may be bad, by its connectivity. Flips and smoothing cure most of that at little
  * cost; contraction and splits are for the worst first, and while these get better smoothing aims beyond what is asked, so that
  * there is room for the next. Where few are left in the end, all of them are treated so. Measured on meshes of TetGen and Gmsh:
@@ -458,7 +474,8 @@ static laves_result mend_given(work *w, laves_error *error) {
                {3, 4, 0.8, 1.2, false}, {3, 3, 0.8, 1.6, false}, {3, 3, 0.74, 1.2, true}};
   laves_result result = LAVES_OK;
   for (size_t i = 0; i < LAVES__COUNT_OF(steps) && result == LAVES_OK; i++) {
-    if (steps[i].room) result = make_room(w, steps[i].admit, error);
+    if (steps[i].room) result = laves__blocks_end(&w->blocks, w->layer, error);
+    if (result == LAVES_OK && steps[i].room) result = make_room(w, steps[i].admit, error);
     if (result != LAVES_OK) break;
     w->rounds = steps[i].rounds;
     w->admission.below = steps[i].admit;

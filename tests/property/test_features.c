@@ -52,12 +52,12 @@ static shape make_wedge30(void) { return make_wedge(30); }
 static shape make_plate(void) { return shape_box((const double[]){-1, -1, -0.06}, (const double[]){1, 1, 0.06}, 2); }
 
 static const solid solids[] = {
-    {"box", make_box, 0.12, 34.5, 131, 1e-9},
-    {"ell", make_ell, 0.13, 34.5, 131, 1e-9},
-    {"cylinder", make_cylinder, 0.13, 34.5, 131, 0.05},
-    {"wedge of 45 degrees", make_wedge45, 0.1, 33, 135, 1e-9},
+    {"box", make_box, 0.12, 38, 126, 1e-9},
+    {"ell", make_ell, 0.13, 38, 126, 1e-9},
+    {"cylinder", make_cylinder, 0.13, 38, 126, 0.05},
+    {"wedge of 45 degrees", make_wedge45, 0.1, 38, 126, 1e-9},
     {"wedge of 30 degrees", make_wedge30, 0.09, 25, 140, 1e-9}, /* the crease itself has 30 */
-    {"plate as thick as the size", make_plate, 0.12, 33, 133, 1e-9},
+    {"plate as thick as the size", make_plate, 0.12, 36.5, 128, 1e-9},
 };
 
 static void keep_all(const solid *about, int number) {
