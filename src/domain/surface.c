@@ -430,7 +430,9 @@ static laves_result make_surface(laves__surface *s, laves__surface_input *input,
     return laves__fail(error, LAVES_ERROR_INPUT, "all %zu triangles of the surface are without area", input->triangle_count);
   const laves_result result = solve(s, close_holes, info, error);
   if (result != LAVES_OK) return result;
-  return encloses_nothing(s, info) ? refuse_emptiness(s, input->triangle_count, info, error) : LAVES_OK;
+  const bool empty = encloses_nothing(s, info);
+  if (laves__is_cancelled(s->context)) return laves__fail_cancelled(error);
+  return empty ? refuse_emptiness(s, input->triangle_count, info, error) : LAVES_OK;
 }
 
 laves_result laves__surface_build(laves_context *context, laves__surface_input *input, const laves_surface_options *options,

@@ -110,7 +110,8 @@ typedef struct laves__moment {
 
 /* Those of the four children of a node, side by side. */
 typedef struct laves__moments {
-  double centre[3][4], area_vector[3][4], first[6][4], radius2[4];
+  double centre[3][4], area_vector[3][4], first[6][4];
+  double radius2[4]; /* squared; of leaves somewhat enlarged; -1: no child */
 } laves__moments;
 
 typedef struct laves__winding {
@@ -314,7 +315,7 @@ bool laves__surface_stitch(laves__surface *s, bool *parted);
 /* Which faces bound {winding number > level} somewhere (keep); marks those that do so in part. */
 bool laves__surface_judge_open(laves__surface *s, bool *keep);
 bool laves__surface_build_rim(laves__surface *s);
-/* Whether this share of a grid of points of the box lies inside, or more. */
+/* Whether this share of a grid of points of the box lies inside, or more; false after a cancel. */
 bool laves__surface_encloses(const laves__surface *s, laves__box3 box, double share);
 /* Winding number less one half. */
 double laves__open_excess(const laves__surface *s, laves__vec3 p);
@@ -327,7 +328,7 @@ double laves__open_cap_guess(const laves__surface *s, laves__vec3 p, double e, d
 /* The cap's point along the steepest direction, within reach; guess: its estimated distance. */
 bool laves__open_project(const laves__surface *s, laves__vec3 p, double e, double guess, laves__vec3 uphill, double reach,
                          laves__vec3 *foot, laves__vec3 *normal);
-/* The side of a ball through which neither triangles nor caps are certain to pass. */
+/* The side of a ball, where it is certain that neither triangles nor caps pass through it. */
 laves__side laves__open_side(const laves__surface *s, laves__vec3 p, double radius);
 
 /* ---- samples ---- */

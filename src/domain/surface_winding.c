@@ -109,7 +109,7 @@ static void pack(const laves__moment below[], int count, laves__moments *m) {
     m->area_vector[1][i] = from->area_vector.y;
     m->area_vector[2][i] = from->area_vector.z;
     for (int k = 0; k < 6; k++) m->first[k][i] = from->first[k];
-    m->radius2[i] = from->radius * from->radius;
+    m->radius2[i] = i < count ? from->radius * from->radius : -1;
   }
 }
 
@@ -203,7 +203,7 @@ static inline double2 far_field(const laves__moments *m, int pair, laves__vec3 p
   const double2 first = LANES(m->area_vector[0]) * x + LANES(m->area_vector[1]) * y + LANES(m->area_vector[2]) * z + xx + yy + zz;
   const double2 quadratic =
       xx * x * x + yy * y * y + zz * z * z + LANES(m->first[3]) * x * y + LANES(m->first[4]) * y * z + LANES(m->first[5]) * z * x;
-  *far = r2 > far2 * LANES(m->radius2);
+  *far = (long2)(r2 > far2 * LANES(m->radius2));
 #undef LANES
   return (double2)((long2)((first - 3 * quadratic * per_r2) * (per_r2 * root(per_r2))) & *far);
 }

@@ -11,9 +11,9 @@
  * treated once more with more smoothing around each contraction. On a graded background flips join in from the first. A flip,
  * contraction or split is kept when the worst of what it touches rises. Where creases crowd, or are noise, all that it touches
  * must also lack less of what is asked, taken together: one that is bad would else be cured at the cost of many, again and again.
- * (Not for what is far outside in the end, around which, where it is little, all is made better than is asked; nor for what is
- * worst once features were let go of: the promise is near, and where it is broken all around is made anew. And not where the
- * boundary is given, for which there is a schedule that goes from the worst to the others.)
+ * (Not for what is far outside in the end; where little is left well outside then, all around it is made better than is asked.
+ * Nor for what is worst once features were let go of: the promise is near, and where it is broken all around is made anew. And
+ * not where the boundary is given, for which there is a schedule that goes from the worst to the others.)
  *
  * Where the layer has a mask of what is fresh, only tets with such a vertex are worked on; what is known of the others is that
  * nothing helped. */
@@ -59,7 +59,7 @@ static const double dire = 0.37;            /* quality: about 25 to 146 degrees 
 static const double far_outside = 0.75;     /* quality: about 36 to 131 degrees for the standard window */
 static const double well_outside = 0.8;     /* quality: about 37 to 129 degrees */
 static const double room_target = 1.2;      /* quality that smoothing aims at where room was made */
-static const size_t wall_count = 200;       /* bad ones; fewer get all the patience there is */
+static const size_t few = 200;              /* bad ones; so many get all the patience there is */
 static const double graded_crowd = 0.1;     /* what `crowd` is on a graded background, after flips */
 static const double given_crowd = 0.05;     /* what `crowd` is in the mesh of another program */
 static const size_t given_crowd_min = 500;  /* tets */
@@ -137,7 +137,7 @@ static double count_thin(const void *user, size_t begin, size_t end) {
 
 /* Whether walls a tet thick are more than a place or two: contraction is dear, and there it seldom reaches the asked window. */
 static bool has_thin_walls(const work *w) {
-  return laves__parallel_sum(w->layer->context, NULL, count_tets(w), count_thin, w) > (double)wall_count;
+  return laves__parallel_sum(w->layer->context, NULL, count_tets(w), count_thin, w) > (double)few;
 }
 
 /* A number that changes when any tet around a tet does. */
@@ -387,14 +387,14 @@ static laves_result make_room(work *w, double below, laves_error *error) {
   return result;
 }
 
-/* What is below a quality, as if nothing had been tried. */
+/* What is below a quality, as if nothing had been tried: it was, but weighed, or without room. */
 static laves_result start_over(work *w, double below, double target, laves_error *error) {
   enum { WORST_PASSES = 4 };
   w->admission.below = below;
   w->target = target;
   w->rounds = THOROUGH_ROUNDS;
   forget(w);
-  for (size_t t = 0; t < w->layer->tet_count; t++) w->stuck[t] = HUGE_VAL; /* flips were weighed, too */
+  for (size_t t = 0; t < w->layer->tet_count; t++) w->stuck[t] = HUGE_VAL;
   return run_passes(w, WORST_PASSES, 1, error);
 }
 
@@ -406,7 +406,7 @@ static laves_result mend_worst(work *w, laves_error *error) {
   if (result != LAVES_OK) return result;
   w->admission.below = well_outside;
   const size_t count = count_bad(w);
-  if (count == 0 || count > wall_count) return LAVES_OK;
+  if (count == 0 || count > few) return LAVES_OK;
   result = make_room(w, well_outside, error);
   if (result == LAVES_OK) result = start_over(w, well_outside, room_target, error);
   w->target = 1;
