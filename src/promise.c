@@ -167,14 +167,15 @@ static bool zone_everything_near(laves__run *r, laves__known_lattice *known) {
 }
 
 /* Adds to the zone that is stuffed: what is around the broken tets; in later rounds a wider neighbourhood, then all of the layer
- * that hangs together with them, in the end all of the solid that does, where the window is proved. What must be made anew is
+ * that hangs together with them, in the end all of the solid that does, where the window is proved. Nearly always two rounds do,
+ * and each may cost as much as the first improvement; so these come soon where they cost no creases. What must be made anew is
  * what differs from `known`. False when memory is short. */
 static bool widen_zone(laves__run *r, int round, size_t broken, laves__known_lattice *known) {
-  enum { WALLS = 5, ALL = 9 }; /* the first rounds of those kinds */
+  const int walls = r->frame.features ? 5 : 2, all = r->frame.features ? 9 : 3; /* the first rounds of those kinds */
   const bool crowd = (double)broken > crowded * (double)r->layer.tet_count;
-  if (!laves__known_take(&r->lattice, known) || (round >= WALLS && !zone_broken_walls(r))) return false;
+  if (!laves__known_take(&r->lattice, known) || (round >= walls && !zone_broken_walls(r))) return false;
   laves__zone_around(r->guarantee, &r->layer, r->forced, round == 0 ? 1 : 3, &r->lattice, known);
-  return !(crowd || round >= ALL) || zone_everything_near(r, known);
+  return !(crowd || round >= all) || zone_everything_near(r, known);
 }
 
 /* The boundary made anew by stuffing in the lattice's zone, and held to features. What is near the zone is grafted into the layer
