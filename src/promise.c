@@ -79,9 +79,8 @@ static const double held_slack = 0.005;
 /* Where more than this share of the layer breaks the promise, small repairs are not tried. */
 static const double crowded = 0.001;
 
-/* Improvement aims a little inside the asked window, so that the last digits of its iterations do not matter. `again`: after
- * features were let go of. */
-static laves_result improve(laves__run *r, bool again) {
+/* Improvement aims a little inside the asked window, so that the last digits of its iterations do not matter. */
+static laves_result improve(laves__run *r, laves__improve_when when) {
   if (!r->options->improve) return LAVES_OK;
   laves__stage_begin(r);
   const bool held = r->guarantee && !laves__is_broken(r->guarantee, &r->layer);
@@ -90,8 +89,8 @@ static laves_result improve(laves__run *r, bool again) {
                              .volume_length = r->options->volume_length > 0 ? r->options->volume_length + 0.05 : 0,
                              .held_min = held ? r->guarantee->min_dihedral + held_slack : 0,
                              .held_max = held ? r->guarantee->max_dihedral - held_slack : 180,
-                             .again = again,
-                             .noise = again && r->noise,
+                             .when = when,
+                             .noise = r->noise,
                              .brief = r->rough};
   const laves_result result =
       laves__is_cancelled(r->context) ? laves__fail_cancelled(r->error) : laves__improve(&r->frame, &aim, &r->layer, r->error);
@@ -109,18 +108,19 @@ static const size_t unkept_count = 100;
 static laves_result release_features(laves__run *r) {
   laves_result result = LAVES_OK;
   if (!r->options->improve) return LAVES_OK;
+  const size_t before = r->released;
   r->noise = r->noise || is_rougher(r, unkept_share, unkept_count);
   for (int what = r->noise ? LAVES__RELEASE_AROUND : LAVES__RELEASE_OFF; what < LAVES__RELEASES && result == LAVES_OK; what++) {
     const size_t released = laves__release_features(&r->frame, &feature_window, what, &r->layer);
     if (laves__is_cancelled(r->context)) return laves__fail_cancelled(r->error);
     r->released += released;
-    if (released > 0) result = improve(r, true);
+    if (released > 0) result = improve(r, LAVES__IMPROVE_RELEASED);
   }
-  return result;
+  return result == LAVES_OK && r->released > before ? improve(r, LAVES__IMPROVE_LAST) : result;
 }
 
 static laves_result improve_layer(laves__run *r) {
-  const laves_result result = improve(r, false);
+  const laves_result result = improve(r, LAVES__IMPROVE_FIRST);
   return result == LAVES_OK && r->frame.features ? release_features(r) : result;
 }
 

@@ -14,8 +14,9 @@ bool laves__held_place(const laves__keeping *k, int32_t vertex, laves__hold hold
                                    place, &direction);
 }
 
-bool laves__edge_is_legal(const laves__keeping *k, int32_t a, int32_t b) {
+bool laves__edge_is_legal(const laves__keeping *k, int32_t from, int32_t to) {
   const laves__hold *hold = k->layer->hold;
+  const int32_t a = from < to ? from : to, b = from < to ? to : from; /* one answer for both ways */
   int32_t crease;
   if (!laves__holds_meet(k->features, hold[a], hold[b])) return false;
   if (!k->features->has_seams || hold[a].kind != LAVES__HOLD_PATCH || hold[b].kind != LAVES__HOLD_PATCH) return true;

@@ -65,7 +65,7 @@ void laves__place_held(laves__keeping *k, size_t *off_feature);
  * there is none within reach. */
 bool laves__held_place(const laves__keeping *k, int32_t vertex, laves__hold hold, laves__vec3 *place);
 /* Whether a boundary edge may stay: its ends have a patch in common and no seam lies between them. */
-bool laves__edge_is_legal(const laves__keeping *k, int32_t a, int32_t b);
+bool laves__edge_is_legal(const laves__keeping *k, int32_t from, int32_t to);
 /* Faces around a vertex that are not legal, and edges. */
 int laves__illegal_around(const laves__keeping *k, int32_t vertex);
 void laves__face_holds(const laves__keeping *k, uint32_t face, laves__hold hold[3]);

@@ -80,12 +80,21 @@ static bool relabel_face(const laves__keeping *k, uint32_t face) {
   return false;
 }
 
-/* Illegal faces and edges around a vertex and its neighbours. */
-static int illegal_near(const laves__keeping *k, int32_t vertex) {
+static bool is_legal(const laves__keeping *k, uint32_t face) {
+  laves__hold hold[3];
+  laves__face_holds(k, face, hold);
+  return laves__face_is_legal(k->features, hold);
+}
+
+/* Illegal faces and edges around the ends of an edge; those at both count once, so that there are fewer in all when this falls.
+ */
+static int illegal_about(const laves__keeping *k, int32_t a, int32_t b) {
   const laves__rim *rim = &k->rim;
-  int count = laves__illegal_around(k, vertex);
-  for (uint32_t i = rim->first[vertex]; i < rim->first[vertex + 1]; i++)
-    count += laves__illegal_around(k, laves__rim_next(rim, rim->at[i], vertex));
+  int count = laves__illegal_around(k, a) + laves__illegal_around(k, b) - !laves__edge_is_legal(k, a, b);
+  for (uint32_t i = rim->first[a]; i < rim->first[a + 1]; i++) {
+    const int32_t *face = rim->face[rim->at[i]];
+    if (face[0] == b || face[1] == b || face[2] == b) count -= !is_legal(k, rim->at[i]);
+  }
   return count;
 }
 
@@ -98,10 +107,10 @@ static bool move_corner(laves__keeping *k, int32_t vertex) {
     const int32_t other = laves__rim_next(rim, rim->at[i], vertex);
     const laves__hold was = hold[other];
     if (was.kind == LAVES__HOLD_CORNER) continue;
-    const int before = illegal_near(k, vertex) + illegal_near(k, other);
+    const int before = illegal_about(k, vertex, other);
     hold[other] = corner;
     relabel(k, vertex);
-    if (hold[vertex].kind != LAVES__HOLD_CORNER && illegal_near(k, vertex) + illegal_near(k, other) < before) {
+    if (hold[vertex].kind != LAVES__HOLD_CORNER && illegal_about(k, vertex, other) < before) {
       k->claimed[corner.id] = other;
       return true;
     }
@@ -122,12 +131,6 @@ static bool move_corner_near(laves__keeping *k, uint32_t face) {
     }
   }
   return false;
-}
-
-static bool is_legal(const laves__keeping *k, uint32_t face) {
-  laves__hold hold[3];
-  laves__face_holds(k, face, hold);
-  return laves__face_is_legal(k->features, hold);
 }
 
 /* Where more faces than these are illegal, in number and share, corners stay. */

@@ -398,19 +398,22 @@ static laves_result start_over(work *w, double below, double target, laves_error
   return run_passes(w, WORST_PASSES, 1, error);
 }
 
-/* What is still far outside is cured at any cost: the worst angle counts for more than how many are outside by little. Where few
- * are left outside by less, room is made for them. */
-static laves_result mend_worst(work *w, laves_error *error) {
-  w->measure.weighs_from = HUGE_VAL;
-  laves_result result = start_over(w, far_outside, 1, error);
-  if (result != LAVES_OK) return result;
+/* Where few are left outside by more than a little, room is made for them. */
+static laves_result mend_last(work *w, laves_error *error) {
   w->admission.below = well_outside;
   const size_t count = count_bad(w);
   if (count == 0 || count > few) return LAVES_OK;
-  result = make_room(w, well_outside, error);
+  laves_result result = make_room(w, well_outside, error);
   if (result == LAVES_OK) result = start_over(w, well_outside, room_target, error);
   w->target = 1;
   return result;
+}
+
+/* What is still far outside is cured at any cost: the worst angle counts for more than how many are outside by little. */
+static laves_result mend_worst(work *w, laves_error *error) {
+  w->measure.weighs_from = HUGE_VAL;
+  const laves_result result = start_over(w, far_outside, 1, error);
+  return result == LAVES_OK ? mend_last(w, error) : result;
 }
 
 /* The lattice's connectivity is good: smoothing does nearly all, contraction the rest. */
@@ -536,7 +539,7 @@ static laves_result bring_home(work *w, laves_error *error) {
 
 /* After features were let go of: only what is far outside (where nearly all is bad, very far), and what was freed, which is off
  * the surface. Where that was noise, nothing else kept the others from the window: then all that is bad. */
-static laves_result mend_again(work *w, bool noise, laves_error *error) {
+static laves_result mend_released(work *w, bool noise, laves_error *error) {
   settle_all(w, settle_floor);
   w->admission.below = is_rough(w) && !noise ? rough_admit : far_outside;
   laves_result result = run_passes(w, SMOOTH_PASSES, 1, error);
@@ -556,7 +559,8 @@ static laves_result mend_again(work *w, bool noise, laves_error *error) {
 /* The schedule for what the layer is. */
 static laves_result mend_all(work *w, const laves__window *window, laves_error *error) {
   if (w->layer->patch) return mend_given(w, error);
-  if (window->again) return mend_again(w, window->noise, error);
+  if (window->when == LAVES__IMPROVE_RELEASED) return mend_released(w, window->noise, error);
+  if (window->when == LAVES__IMPROVE_LAST) return mend_last(w, error);
   const laves_result result = w->layer->hold ? bring_home(w, error) : LAVES_OK;
   if (result != LAVES_OK) return result;
   return w->layer->scale ? mend_graded(w, error) : mend_tiling(w, window->brief, error);
@@ -623,7 +627,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
             .layer = layer};
   w.population = count_population(layer);
   leave_out_sharp(&w, window);
-  if (layer->hold && !layer->patch && window->again) w.measure.weighs_from = dire;
+  if (layer->hold && !layer->patch && window->when == LAVES__IMPROVE_RELEASED) w.measure.weighs_from = dire;
   const int workers = laves__workers(context);
   laves_result result = LAVES_OK;
   const bool flips = layer->scale || layer->hold;
@@ -648,7 +652,7 @@ laves_result laves__improve(const laves__frame *frame, const laves__window *wind
   for (int i = 0; i < workers; i++) w.journal[i].context = context;
   if (!laves__parallel_for(context, NULL, count_tets(&w), 1024, measure_all, &w)) result = laves__fail_cancelled(error);
   if (layer->patch && !laves__blocks_begin(layer, window->block_vertices, &w.blocks)) result = laves__fail_memory(context, error);
-  if (result == LAVES_OK && !layer->patch && !window->again)
+  if (result == LAVES_OK && !layer->patch && window->when == LAVES__IMPROVE_FIRST)
     result = laves__relax_surface(frame, &w.measure, SWEEPS, layer, error);
   if (result == LAVES_OK) result = mend_all(&w, window, error);
   if (result == LAVES_OK && !layer->patch) settle_all(&w, settle_floor);

@@ -19,17 +19,24 @@
 #include "mesh/layer.h"
 #include "mesh/mesh.h"
 
+/* When a layer is improved. */
+typedef enum laves__improve_when {
+  LAVES__IMPROVE_FIRST,
+  LAVES__IMPROVE_RELEASED, /* after features were let go of: without the Laplace start, what is far outside */
+  LAVES__IMPROVE_LAST      /* once no more are let go of: where few are left well outside, these */
+} laves__improve_when;
+
 /* What is asked of every tetrahedron. */
 typedef struct laves__window {
   double min_dihedral, max_dihedral; /* degrees */
   double volume_length;              /* 0: not asked */
   double held_min, held_max;         /* all tets are inside these angles and stay so; 0 and 180: nothing is held */
-  bool again;                        /* after a first time: without the Laplace start */
-  size_t passes;                     /* at most so many; 0: as many as help */
-  double deadline;                   /* of laves__wall_seconds(), when to stop; 0: never */
-  size_t block_vertices;             /* as laves__blocks_begin() takes them; for tests */
-  bool noise;                        /* with `again`: those features were noise, and all of the window is asked for now */
-  bool brief;                        /* the solid is rougher than the size: few passes, and only the worst get more */
+  laves__improve_when when;
+  size_t passes;         /* at most so many; 0: as many as help */
+  double deadline;       /* of laves__wall_seconds(), when to stop; 0: never */
+  size_t block_vertices; /* as laves__blocks_begin() takes them; for tests */
+  bool noise;            /* features let go of were noise, and all of the window is asked for now */
+  bool brief;            /* the solid is rougher than the size: few passes, and only the worst get more */
 } laves__window;
 
 /* Improves the layer, or what of it is fresh, until every tet is inside the window, or no operation helps.
