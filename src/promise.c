@@ -104,7 +104,8 @@ static const double unkept_share = 0.01;
 static const size_t unkept_count = 100;
 
 /* Where features come closer than the size allows, angles go before them: step by step vertices are let go of, and improved
- * again, until all is inside a wide window. Of noise all that is near goes at once, since each step takes long there. */
+ * again, until all is inside a wide window. Of noise all that is near goes at once, since each step takes long there. Once no
+ * more are let go of, the few that are left well outside the asked window get room. */
 static laves_result release_features(laves__run *r) {
   laves_result result = LAVES_OK;
   if (!r->options->improve) return LAVES_OK;

@@ -86,8 +86,8 @@ static bool is_legal(const laves__keeping *k, uint32_t face) {
   return laves__face_is_legal(k->features, hold);
 }
 
-/* Illegal faces and edges around the ends of an edge; those at both count once, so that there are fewer in all when this falls.
- */
+/* Illegal faces and edges around the ends of an edge. Those at both count once: when this falls there are fewer in all, so moves
+ * that lower it come to an end. */
 static int illegal_about(const laves__keeping *k, int32_t a, int32_t b) {
   const laves__rim *rim = &k->rim;
   int count = laves__illegal_around(k, a) + laves__illegal_around(k, b) - !laves__edge_is_legal(k, a, b);

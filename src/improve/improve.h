@@ -35,7 +35,7 @@ typedef struct laves__window {
   size_t passes;         /* at most so many; 0: as many as help */
   double deadline;       /* of laves__wall_seconds(), when to stop; 0: never */
   size_t block_vertices; /* as laves__blocks_begin() takes them; for tests */
-  bool noise;            /* features let go of were noise, and all of the window is asked for now */
+  bool noise;            /* after a release: what was let go of was noise, so now all of the window is asked for */
   bool brief;            /* the solid is rougher than the size: few passes, and only the worst get more */
 } laves__window;
 
