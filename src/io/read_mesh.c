@@ -8,6 +8,7 @@
 #include "io/file.h"
 #include "io/mesh_input.h"
 #include "io/scan.h"
+#include "io/vtu.h"
 
 typedef laves_result read_fn(laves__mesh_input *input, laves_error *error);
 
@@ -40,7 +41,7 @@ static bool is_abaqus(const laves__mesh_input *input) {
 
 static read_fn *find_reader(const laves__mesh_input *input) {
   if (is_medit_binary(input)) return laves__read_medit_binary;
-  if (laves__mesh_input_mentions(input, "<VTKFile")) return laves__read_vtu;
+  if (laves__is_vtu(input)) return laves__read_vtu;
   if (laves__mesh_input_mentions(input, "$MeshFormat")) return laves__read_gmsh;
   if (laves__mesh_input_mentions(input, "MeshVersionFormatted")) return laves__read_medit_text;
   if (laves__mesh_input_mentions(input, "# vtk DataFile")) return laves__read_vtk;

@@ -85,6 +85,9 @@ typedef struct laves__vtu {
   size_t candidate_count, candidate_capacity, candidate_name_capacity;
 } laves__vtu;
 
+/* Whether a file is one of these, by how it begins. Whoever reads them asks here, so that all take the same files. */
+bool laves__is_vtu(const laves__mesh_input *input);
+
 /* Walks the XML from the input's begin to its end, or to the appended data, and fills all but `decoded`. The input's `lines` and
  * `values` say what else than tets and triangles is wanted. Free with laves__vtu_free(), also after a failure. */
 laves_result laves__vtu_read_structure(laves__vtu *r, laves_error *error);

@@ -306,9 +306,8 @@ static laves_result read_structure(ranges *r, laves_error *error) {
     const bool whole = bytes >= r->file.bytes;
     laves_result result = read_head(r, (size_t)(whole ? r->file.bytes : bytes), error);
     if (result != LAVES_OK) return result;
-    if (!begins_as_xml(r))
-      return laves__mesh_input_fail(&r->input, error,
-                                    "it does not begin as XML does, so it is no VTU file; check it without --stream");
+    if (!begins_as_xml(r) || !laves__is_vtu(&r->input))
+      return laves__mesh_input_fail(&r->input, error, "it does not begin as a VTU file does; check it without --stream");
     result = laves__vtu_read_structure(&r->structure, error);
     if (result == LAVES_ERROR_MEMORY || (result == LAVES_OK && r->structure.appended)) return result;
     if (!whole && bytes < HEAD_BYTES_MAX) continue;

@@ -331,6 +331,8 @@ laves_result laves__vtu_read_structure(laves__vtu *r, laves_error *error) {
   return result == LAVES_OK ? choose_values(r, error) : result;
 }
 
+bool laves__is_vtu(const laves__mesh_input *input) { return laves__mesh_input_mentions(input, "<VTKFile"); }
+
 void laves__vtu_free(laves__vtu *r) {
   laves_context *context = r->input->context;
   laves__free(context, r->pieces, r->piece_capacity, sizeof *r->pieces);

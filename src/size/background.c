@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "io/file.h"
+#include "io/vtu.h"
 #include "size/background_parts.h"
 
 struct laves__background_sizes {
@@ -63,7 +64,7 @@ typedef laves_result read_fn(laves__mesh_input *input, laves_error *error);
 
 /* Gmsh's older views start with a section of their own. */
 static read_fn *find_reader(const laves__mesh_input *input) {
-  if (laves__mesh_input_mentions(input, "<VTKFile")) return laves__read_vtu;
+  if (laves__is_vtu(input)) return laves__read_vtu;
   if (laves__mesh_input_mentions(input, "$MeshFormat")) return laves__read_gmsh;
   if (laves__mesh_input_mentions(input, "$PostFormat")) return NULL;
   return laves__mesh_input_mentions(input, "View") ? laves__read_pos : NULL;

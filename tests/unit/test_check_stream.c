@@ -508,9 +508,11 @@ static void refused_kinds(void **state) {
   laves_mesh_free(mesh);
   refuse_as(*state, "appended");
   put_text("");
-  refuse_as(*state, "it does not begin as XML does");
+  refuse_as(*state, "it does not begin as a VTU file does");
   put_text("solid x\nendsolid x\n");
-  refuse_as(*state, "it does not begin as XML does");
+  refuse_as(*state, "it does not begin as a VTU file does");
+  put_text("<vtkfile type=\"UnstructuredGrid\"><AppendedData encoding=\"raw\">_AAAA"); /* names in XML have a case */
+  refuse_as(*state, "it does not begin as a VTU file does");
   put_text("<VTKFile type=\"UnstructuredGrid\"><AppendedData encoding=\"base64\">_AAAA");
   refuse_as(*state, "base64");
   put_text(
