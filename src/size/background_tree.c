@@ -118,13 +118,14 @@ static laves_result copy_input(const laves__mesh_input *input, laves__background
   tree->values = laves__alloc(tree->context, tree->value_count, sizeof *tree->values);
   tree->items = laves__alloc(tree->context, tree->item_count, corners * sizeof *tree->items);
   if (!tree->points || !tree->values || !tree->items) return laves__fail_memory(tree->context, error);
-  memcpy(tree->points, input->points, tree->point_count * sizeof *tree->points);
-  memcpy(tree->values, input->values.items, tree->value_count * sizeof *tree->values);
-  for (size_t i = 0; i < tree->item_count * corners; i++) {
-    if (laves__cancelled_at(tree->context, "read", i, tree->item_count * corners)) return laves__fail_cancelled(error);
+  for (size_t i = 0; i < tree->point_count && !laves__cancelled_at(tree->context, "read", i, tree->point_count); i++)
+    tree->points[i] = input->points[i];
+  for (size_t i = 0; i < tree->value_count && !laves__cancelled_at(tree->context, "read", i, tree->value_count); i++)
+    tree->values[i] = input->values.items[i];
+  const size_t numbers = tree->item_count * corners;
+  for (size_t i = 0; i < numbers && !laves__cancelled_at(tree->context, "read", i, numbers); i++)
     tree->items[i] = corners == 4 ? (uint32_t)input->tets[i / 4][i % 4] : (uint32_t)i;
-  }
-  return LAVES_OK;
+  return laves__is_cancelled(tree->context) ? laves__fail_cancelled(error) : LAVES_OK;
 }
 
 laves_result laves__background_tree_make(const laves__mesh_input *input, laves__background_tree *tree, laves_error *error) {
