@@ -140,18 +140,23 @@ static laves__vec3 middle(const triangle *t) { return v3_scale(v3_add(t->a, v3_a
 
 static bool is_finite(const triangle *t) { return v3_finite(t->a) && v3_finite(t->b) && v3_finite(t->c); }
 
+/* Whether all is to end: asked by every loop over triangles while the tree is built. */
+static bool stopped(const laves__boundary_tree *tree, size_t i, size_t count) {
+  return laves__cancelled_at(tree->context, "distance", i, count);
+}
+
 /* Fills `order` with the finite triangles along the curve; returns how many. */
-static size_t sort_triangles(const laves_mesh *mesh, const laves__boundary *boundary, laves__vec3 origin, laves__keyed *order,
-                             laves__keyed *scratch) {
+static size_t sort_triangles(const laves__boundary_tree *tree, const laves_mesh *mesh, const laves__boundary *boundary,
+                             laves__vec3 origin, laves__keyed *order, laves__keyed *scratch) {
   laves__box3 box = box3_empty();
   size_t count = 0;
-  for (size_t i = 0; i < boundary->count; i++) {
+  for (size_t i = 0; i < boundary->count && !stopped(tree, i, boundary->count); i++) {
     const triangle t = triangle_of(mesh, boundary->faces[i], origin);
     if (!is_finite(&t)) continue;
     box = box3_add(box, middle(&t));
     order[count++].value = i;
   }
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count && !stopped(tree, i, count); i++) {
     const triangle t = triangle_of(mesh, boundary->faces[order[i].value], origin);
     order[i].key = morton(middle(&t), &box);
   }
@@ -191,8 +196,8 @@ static void fill_leaf(laves__boundary_tree *tree, size_t leaf) {
 static void fill_boxes(laves__boundary_tree *tree) {
   const laves__box3 none = box3_empty();
   set_box(tree->boxes, 0, &none);
-  for (size_t leaf = 0; leaf < tree->leaf_count; leaf++) fill_leaf(tree, leaf);
-  for (size_t i = tree->leaf_count - 1; i >= 1; i--) {
+  for (size_t leaf = 0; leaf < tree->leaf_count && !stopped(tree, leaf, tree->leaf_count); leaf++) fill_leaf(tree, leaf);
+  for (size_t i = tree->leaf_count - 1; i >= 1 && !stopped(tree, i, tree->leaf_count); i--) {
     const laves__box3 low = get_box(tree->boxes, 2 * i), high = get_box(tree->boxes, 2 * i + 1), both = join(&low, &high);
     set_box(tree->boxes, i, &both);
     const int8_t a = tree->levels[2 * i], b = tree->levels[2 * i + 1];
@@ -204,7 +209,7 @@ static void fill_boxes(laves__boundary_tree *tree) {
 static void fill_triangles(const laves_mesh *mesh, const laves__boundary *boundary, laves__vec3 origin, const float *edges,
                            double base, const laves__keyed *order, laves__boundary_tree *tree) {
   tree->greatest = -NO_LEVEL;
-  for (size_t i = 0; i < tree->triangle_count; i++) {
+  for (size_t i = 0; i < tree->triangle_count && !stopped(tree, i, tree->triangle_count); i++) {
     const int32_t *face = boundary->faces[order[i].value];
     triangle *t = &tree->triangles[i];
     *t = triangle_of(mesh, face, origin);
@@ -238,9 +243,13 @@ laves_result laves__boundary_tree_build(laves_context *context, const laves_mesh
     result = laves__fail_memory(context, error);
     goto clean_up;
   }
-  made->triangle_count = sort_triangles(mesh, boundary, origin, order, scratch);
+  made->triangle_count = sort_triangles(made, mesh, boundary, origin, order, scratch);
   fill_triangles(mesh, boundary, origin, edges, base, order, made);
   fill_boxes(made);
+  if (laves__is_cancelled(context)) {
+    result = laves__fail_cancelled(error);
+    goto clean_up;
+  }
   *tree = made;
   made = NULL;
 clean_up:

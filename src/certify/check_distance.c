@@ -23,6 +23,7 @@
 #include "certify/boundary_tree.h"
 
 enum { CHUNK = 256, SAMPLES_PER_FACE = 4 + 3 + 3, INNER = 4 };
+enum { SEARCHES_BETWEEN_ASKING = 32 }; /* of the nearest triangle: each looks at many where all are as far */
 
 /* Distance of surface samples in mean boundary edges, and the cover of flat ones: about six on the area of a triangle. */
 #define SURFACE_SPACING 0.3
@@ -130,10 +131,12 @@ static laves_result list_boundary_samples(laves_context *context, measuring *m, 
     laves__free(context, seen, m->mesh->vertex_count, 1);
     return laves__fail_memory(context, error);
   }
-  for (size_t i = 0; i < m->boundary->count; i++) add_face_samples(m->mesh, m->boundary->faces[i], seen, m->samples);
+  const size_t faces = m->boundary->count;
+  for (size_t i = 0; i < faces && !laves__cancelled_at(context, "distance", i, faces); i++)
+    add_face_samples(m->mesh, m->boundary->faces[i], seen, m->samples);
   m->samples->boundary_count = m->samples->count;
   laves__free(context, seen, m->mesh->vertex_count, 1);
-  return LAVES_OK;
+  return laves__is_cancelled(context) ? laves__fail_cancelled(error) : LAVES_OK;
 }
 
 /* Whether both signs occur among the points a step from the foot: against and along the normal, else all around. */
@@ -226,15 +229,21 @@ static void project_chunks(void *user, size_t begin, size_t end, int worker) {
 
 /* ---- samples on the surface ---- */
 
+/* Whether all is to end: asked now and then, and only by the calling thread; the others hear of it. */
+static bool stopped(const measuring *m, size_t i, size_t count, int worker) {
+  laves_context *context = m->samples->context;
+  if (i % SEARCHES_BETWEEN_ASKING != 0) return false;
+  return worker == 0 ? laves__cancelled(context, "distance", (double)i / (double)count) : laves__is_cancelled(context);
+}
+
 /* The nearest triangle of the sample before is no further from this one than its distance and the way between them. */
 static void nearest_chunks(void *user, size_t begin, size_t end, int worker) {
   const measuring *m = user;
   laves__sample *samples = m->samples->items + m->samples->boundary_count;
   const size_t count = m->samples->count - m->samples->boundary_count;
-  (void)worker;
   for (size_t chunk = begin; chunk < end; chunk++) {
     size_t near = LAVES__NO_TRIANGLE;
-    for (size_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < count; i++) {
+    for (size_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < count && !stopped(m, i, count, worker); i++) {
       const laves__vec3 local = v3_sub(samples[i].point, m->oracle->origin);
       double bound = INFINITY;
       if (i > chunk * CHUNK) {
@@ -250,7 +259,8 @@ static void nearest_chunks(void *user, size_t begin, size_t end, int worker) {
 static double boundary_area(const laves__samples *samples, double *stretched) {
   double area = 0;
   *stretched = 0;
-  for (size_t i = 0; i < samples->boundary_count; i++) {
+  for (size_t i = 0;
+       i < samples->boundary_count && !laves__cancelled_at(samples->context, "distance", i, samples->boundary_count); i++) {
     const laves__sample *s = &samples->items[i];
     area += s->weight;
     *stretched += ldexp(s->weight, -2 * laves__edge_level((double)s->edge, samples->spacing));
@@ -334,7 +344,8 @@ static laves_result list_face_samples(laves_context *context, const measuring *m
   if (laves__is_cancelled(context)) {
     result = laves__fail_cancelled(error);
   } else if (laves__grow(context, &samples->items, &samples->capacity, samples->count + count, sizeof *samples->items)) {
-    for (size_t i = 0; i < count; i++) samples->items[samples->count++] = sample_at(v3_add(points[i], oracle->origin), 1, 0);
+    for (size_t i = 0; i < count && !laves__cancelled_at(context, "distance", i, count); i++)
+      samples->items[samples->count++] = sample_at(v3_add(points[i], oracle->origin), 1, 0);
   } else {
     result = laves__fail_memory(context, error);
   }
@@ -356,7 +367,7 @@ static laves_result list_found_samples(laves_context *context, const measuring *
   if (laves__is_cancelled(context)) {
     result = laves__fail_cancelled(error);
   } else if (laves__grow(context, &samples->items, &samples->capacity, samples->count + count, sizeof *samples->items)) {
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count && !laves__cancelled_at(context, "distance", i, count); i++)
       samples->items[samples->count++] = sample_at(v3_add(found[i].point, oracle->origin), found[i].weight, 0);
   } else {
     result = laves__fail_memory(context, error);
@@ -372,6 +383,7 @@ static laves_result list_surface_samples(laves_context *context, measuring *m, l
   const double boundary = boundary_area(m->samples, &stretched);
   const double stretch = boundary > 0 && isfinite(stretched / boundary) ? stretched / boundary : 1;
   const double area = stretch * (oracle->area > 0 ? oracle->area : 2 * boundary);
+  if (laves__is_cancelled(context)) return laves__fail_cancelled(error);
   if (!(spacing > 0) || !isfinite(area)) return LAVES_OK;
   if (area / (spacing * spacing) > SURFACE_SAMPLES_MAX) spacing = sqrt(area / SURFACE_SAMPLES_MAX);
   if (oracle->flat_face && (double)oracle->flat_face_count < SURFACE_SAMPLES_MAX / 2)
@@ -386,7 +398,7 @@ static laves_result list_surface_samples(laves_context *context, measuring *m, l
 /* The largest of the true distances of samples [begin, end), as far as it can be; NAN when one is not known. */
 static double largest_of(const laves__samples *samples, size_t begin, size_t end) {
   double largest = 0;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = begin; i < end && !laves__cancelled_at(samples->context, "distance", i, end); i++) {
     const double distance = samples->items[i].distance + samples->items[i].slack;
     if (isnan(distance)) return NAN;
     largest = fmax(largest, distance);
@@ -423,10 +435,10 @@ laves_result laves__measure_distances(laves_context *context, const laves_mesh *
   if (result != LAVES_OK) goto clean_up;
   result = list_surface_samples(context, &m, error);
   if (result != LAVES_OK) goto clean_up;
-  if (!laves__parallel_for(context, "distance", chunks(samples->count - samples->boundary_count), 1, nearest_chunks, &m))
-    result = laves__fail_cancelled(error);
+  laves__parallel_for(context, "distance", chunks(samples->count - samples->boundary_count), 1, nearest_chunks, &m);
   samples->boundary_at_most = largest_of(samples, 0, samples->boundary_count) + samples->boundary_cover;
   samples->surface_at_most = largest_of(samples, samples->boundary_count, samples->count) + samples->surface_cover;
+  if (laves__is_cancelled(context)) result = laves__fail_cancelled(error);
 clean_up:
   laves__boundary_tree_free(m.tree);
   if (result != LAVES_OK) laves__samples_free(samples);
@@ -437,7 +449,7 @@ clean_up:
 static void summarise(const laves__samples *samples, size_t begin, size_t end, double *max, double *mean, double place[3]) {
   double sum = 0, weights = 0;
   *max = NAN;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = begin; i < end && !laves__cancelled_at(samples->context, "distance", i, end); i++) {
     const laves__sample *s = &samples->items[i];
     if (!isfinite(s->distance)) continue;
     sum += s->weight * s->distance;
@@ -456,6 +468,10 @@ laves_result laves__check_distances(laves_context *context, const laves_mesh *me
   summarise(samples, 0, samples->boundary_count, &check->to_surface_max, &check->to_surface_mean, check->to_surface_place);
   summarise(samples, samples->boundary_count, samples->count, &check->from_surface_max, &check->from_surface_mean,
             check->from_surface_place);
+  if (laves__is_cancelled(context)) {
+    laves__samples_free(samples);
+    return laves__fail_cancelled(error);
+  }
   check->to_surface_cover = samples->boundary_cover;
   check->from_surface_cover = samples->surface_cover;
   check->to_surface_at_most = samples->boundary_at_most;
