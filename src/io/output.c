@@ -8,15 +8,14 @@
  *
  * Items are formatted by all threads in waves: every block of a wave has a slot of its own in one scratch block, and the
  * slots are written in order when the wave is done, so the bytes do not depend on the number of threads. Rows, all of one length,
- * are written by whoever formatted them, at their places in the file, so that formatting and writing go on at the same time. */
+ * have a file of their own: output_rows.c. */
 #define _GNU_SOURCE /* O_TMPFILE; NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp): the C library's name */
 #include "io/output.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <pthread.h>
+#include <math.h>
 #include <stdarg.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,11 +24,10 @@
 
 enum {
   BUFFER_BYTES = 1 << 20,
-  PIECE_BYTES = 4 << 20,    /* written between two questions whether to cancel */
-  SLOT_BYTES = 1 << 18,     /* room for one block's text: big enough to make threads worth while, small enough for caches */
-  ROW_SLOT_BYTES = 1 << 20, /* the same for rows, of which each is one call of the system */
-  SLOTS_PER_WORKER = 4,     /* evens out blocks of different cost */
-  TEMPORARY_TRIES = 1000,   /* names tried before giving up; each is taken only by a file left over or in the making */
+  PIECE_BYTES = 4 << 20,  /* written between two questions whether to cancel */
+  SLOT_BYTES = 1 << 18,   /* room for one block's text: big enough to make threads worth while, small enough for caches */
+  SLOTS_PER_WORKER = 4,   /* evens out blocks of different cost */
+  TEMPORARY_TRIES = 1000, /* names tried before giving up; each is taken only by a file left over or in the making */
 };
 
 static const char phase[] = "write";
@@ -47,7 +45,7 @@ void laves__output_fail(laves__output *out, laves_result result, const char *for
 /* NOLINTNEXTLINE(concurrency-mt-unsafe): threads share at most the text of an unknown number. */
 static const char *system_text(void) { return strerror(errno); }
 
-static void fail_system(laves__output *out, const char *what, const char *path) {
+void laves__output_fail_system(laves__output *out, const char *what, const char *path) {
   laves__output_fail(out, LAVES_ERROR_WRITE, "cannot %s '%s': %s", what, path, system_text());
 }
 
@@ -78,9 +76,9 @@ static void find_target(laves__output *out, const char *path, mode_t *mode) {
   *mode = info.st_mode & 0777;
   if (out->direct) return;
   if (access(path, W_OK) != 0)
-    fail_system(out, "replace", path);
+    laves__output_fail_system(out, "replace", path);
   else if (!realpath(path, out->target))
-    fail_system(out, "find", path);
+    laves__output_fail_system(out, "find", path);
 }
 
 /* Length of the target's path up to and with the last slash. */
@@ -144,12 +142,19 @@ static void open_temporary(laves__output *out, mode_t mode) {
 static void open_direct(laves__output *out) {
   out->file = open(out->target, O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (out->file < 0 || fcntl(out->file, F_SETFL, fcntl(out->file, F_GETFL) & ~O_NONBLOCK) < 0)
-    fail_system(out, "write", out->target);
+    laves__output_fail_system(out, "write", out->target);
+}
+
+/* What the system would hold back of a file: Linux lets a fifth of the memory wait for the disk (vm.dirty_ratio). */
+static double held_back(void) {
+  const double pages = (double)sysconf(_SC_PHYS_PAGES), page_bytes = (double)sysconf(_SC_PAGESIZE);
+  return pages > 0 && page_bytes > 0 ? pages * page_bytes / 5 : HUGE_VAL;
 }
 
 laves_result laves__output_open(laves__output *out, laves_context *context, const char *path) {
   memset(out, 0, sizeof *out);
   out->context = context;
+  out->uncached_from = held_back();
   out->file = -1;
   mode_t mode = 0;
   find_target(out, path, &mode);
@@ -165,21 +170,20 @@ laves_result laves__output_open(laves__output *out, laves_context *context, cons
   return out->error.result;
 }
 
-/* Reports progress; the error is set when that says to cancel. */
-static void ask_cancel(laves__output *out) {
+void laves__output_ask_cancel(laves__output *out) {
   const double done_part = out->expected > (double)out->written ? (double)out->written / out->expected : 1;
   if (laves__cancelled(out->context, phase, out->prepared + (1 - out->prepared) * done_part)) laves__fail_cancelled(&out->error);
 }
 
 static void write_through(laves__output *out, const char *bytes, size_t count) {
   while (count > 0 && out->error.result == LAVES_OK) {
-    ask_cancel(out);
+    laves__output_ask_cancel(out);
     if (out->error.result != LAVES_OK) return;
     const ssize_t done = write(out->file, bytes, count < PIECE_BYTES ? count : PIECE_BYTES);
     if (done < 0 && errno == EINTR) continue;
     if (done <= 0) {
       if (done == 0) errno = ENOSPC; /* a device that takes nothing more */
-      fail_system(out, "write", out->target);
+      laves__output_fail_system(out, "write", out->target);
       return;
     }
     bytes += done;
@@ -188,7 +192,7 @@ static void write_through(laves__output *out, const char *bytes, size_t count) {
   }
 }
 
-static void flush(laves__output *out) {
+void laves__output_flush(laves__output *out) {
   out->written -= out->used; /* write_through counts them again */
   write_through(out, out->buffer, out->used);
   out->used = 0;
@@ -196,7 +200,7 @@ static void flush(laves__output *out) {
 
 void laves__output_bytes(laves__output *out, const void *bytes, size_t count) {
   if (out->error.result != LAVES_OK || count == 0) return;
-  if (count > BUFFER_BYTES - out->used) flush(out);
+  if (count > BUFFER_BYTES - out->used) laves__output_flush(out);
   if (out->error.result != LAVES_OK) return;
   if (count >= BUFFER_BYTES) {
     write_through(out, bytes, count);
@@ -258,96 +262,10 @@ void laves__output_items(laves__output *out, size_t count, size_t item_bytes, la
   laves__free(out->context, w.lengths, slots, sizeof *w.lengths);
 }
 
-/* ---- rows ---- */
-
-typedef struct rows {
-  laves__output *out;
-  laves__output_items_fn *fn;
-  const void *user;
-  size_t base, count; /* those being written */
-  size_t row_bytes, per_slot;
-  uint64_t first;          /* where the first of them goes in the file */
-  char *slots;             /* one for each worker */
-  atomic_int fault;        /* errno of the first write that failed */
-  pthread_mutex_t writing; /* the system lets one in at a time, and has the others spin */
-} rows;
-
-/* Writes all of some bytes at a place of the file; returns 0 or errno. */
-static int write_at(int file, const char *bytes, size_t count, uint64_t place) {
-  while (count > 0) {
-    const ssize_t done = pwrite(file, bytes, count, (off_t)place);
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) return done == 0 ? ENOSPC : errno;
-    bytes += done;
-    count -= (size_t)done;
-    place += (uint64_t)done;
-  }
-  return 0;
-}
-
-static void write_slots(void *user, size_t begin, size_t end, int worker) {
-  rows *r = user;
-  char *slot = r->slots + (size_t)worker * ROW_SLOT_BYTES;
-  for (size_t i = begin; i < end && atomic_load(&r->fault) == 0; i++) {
-    const size_t first = i * r->per_slot, last = r->count - first < r->per_slot ? r->count : first + r->per_slot;
-    const size_t bytes = r->fn(r->user, r->base + first, r->base + last, slot);
-    LAVES_ASSERT(bytes == (last - first) * r->row_bytes);
-    pthread_mutex_lock(&r->writing);
-    const int fault = write_at(r->out->file, slot, bytes, r->first + (uint64_t)first * r->row_bytes);
-    pthread_mutex_unlock(&r->writing);
-    int none = 0;
-    if (fault) atomic_compare_exchange_strong(&r->fault, &none, fault);
-  }
-}
-
-/* Slots between two reports of progress, which also tell whether to cancel. */
-enum { REPORT_SLOTS = 16 };
-
-static void write_rows(rows *r) {
-  laves__output *out = r->out;
-  const size_t count = r->count, report = REPORT_SLOTS * r->per_slot;
-  for (size_t done = 0; done < count && out->error.result == LAVES_OK; done += r->count) {
-    r->count = count - done < report ? count - done : report;
-    r->base = done;
-    ask_cancel(out);
-    if (out->error.result != LAVES_OK) return;
-    if (!laves__parallel_for(out->context, NULL, (r->count + r->per_slot - 1) / r->per_slot, 1, write_slots, r))
-      laves__fail_cancelled(&out->error);
-    errno = atomic_load(&r->fault);
-    if (errno) fail_system(out, "write", out->target);
-    r->first += (uint64_t)r->count * r->row_bytes;
-    out->written += (uint64_t)r->count * r->row_bytes;
-  }
-}
-
-void laves__output_rows(laves__output *out, size_t count, size_t row_bytes, laves__output_items_fn *fn, const void *user) {
-  LAVES_ASSERT(row_bytes > 0 && row_bytes <= SLOT_BYTES);
-  if (out->direct) {
-    laves__output_items(out, count, row_bytes, fn, user);
-    return;
-  }
-  flush(out);
-  const int workers = laves__workers(out->context);
-  rows r = {.out = out, .fn = fn, .user = user, .count = count, .row_bytes = row_bytes, .per_slot = ROW_SLOT_BYTES / row_bytes};
-  r.first = out->written;
-  atomic_init(&r.fault, 0);
-  if (out->error.result != LAVES_OK || count == 0) return;
-  pthread_mutex_init(&r.writing, NULL);
-  r.slots = laves__alloc(out->context, (size_t)workers, ROW_SLOT_BYTES);
-  if (!r.slots)
-    laves__output_fail_memory(out);
-  else
-    write_rows(&r);
-  laves__free(out->context, r.slots, (size_t)workers, ROW_SLOT_BYTES);
-  pthread_mutex_destroy(&r.writing);
-  if (out->error.result == LAVES_OK && lseek(out->file, (off_t)out->written, SEEK_SET) < 0)
-    fail_system(out, "write", out->target);
-}
-
 laves_result laves__output_complete(laves__output *out) {
-  if (out->error.result == LAVES_OK) flush(out);
+  if (out->error.result == LAVES_OK) laves__output_flush(out);
   if (out->error.result == LAVES_OK && !out->direct && !out->temporary[0]) name_temporary(out, link_file);
-  if (out->file >= 0 && close(out->file) != 0) fail_system(out, "write", out->target);
+  if (out->file >= 0 && close(out->file) != 0) laves__output_fail_system(out, "write", out->target);
   out->file = -1;
   return out->error.result;
 }
@@ -355,7 +273,7 @@ laves_result laves__output_complete(laves__output *out) {
 laves_result laves__output_publish(laves__output *out) {
   if (out->error.result != LAVES_OK || out->direct) return out->error.result;
   if (rename(out->temporary, out->target) != 0)
-    fail_system(out, "write", out->target);
+    laves__output_fail_system(out, "write", out->target);
   else
     out->temporary[0] = 0;
   return out->error.result;

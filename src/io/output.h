@@ -20,9 +20,10 @@ typedef struct laves__output {
   bool direct;       /* no temporary file */
   char *buffer;
   size_t used;
-  uint64_t written; /* bytes so far, those in the buffer too */
-  double expected;  /* about how many bytes there will be, for progress; set by the writer */
-  double prepared;  /* the fraction of the work done before the first byte; set by the writer */
+  uint64_t written;     /* bytes so far, those in the buffer too */
+  double expected;      /* about how many bytes there will be, for progress; set by the writer */
+  double uncached_from; /* a file of which more is expected goes past the system's cache where it can; set by opening */
+  double prepared;      /* the fraction of the work done before the first byte; set by the writer */
   char target[PATH_MAX];
   char temporary[PATH_MAX]; /* empty: no file has a name yet */
   char kept[PATH_MAX];      /* of several files that are published together: the older file's second name; empty: none */
@@ -40,12 +41,19 @@ typedef size_t laves__output_items_fn(const void *user, size_t begin, size_t end
 void laves__output_items(laves__output *out, size_t count, size_t item_bytes, laves__output_items_fn *fn, const void *user);
 
 /* The same for items of exactly row_bytes each. Places in the file are known then, so regular files are written by all threads at
- * once, each its own part. */
+ * once, each its own part, and large ones past the system's cache. Rows may be formatted more than once. */
 void laves__output_rows(laves__output *out, size_t count, size_t row_bytes, laves__output_items_fn *fn, const void *user);
 
 /* Records a failure found by the writer itself; a printf sentence. */
 void laves__output_fail(laves__output *out, laves_result result, const char *format, ...) __attribute__((format(printf, 3, 4)));
 void laves__output_fail_memory(laves__output *out);
+/* The same of what the system refused: "cannot WHAT 'PATH': errno's text". */
+void laves__output_fail_system(laves__output *out, const char *what, const char *path);
+
+/* Writes what is in the buffer. */
+void laves__output_flush(laves__output *out);
+/* Reports progress; the error is set when that says to cancel. */
+void laves__output_ask_cancel(laves__output *out);
 
 /* Flushes, names and closes the temporary file. */
 laves_result laves__output_complete(laves__output *out);

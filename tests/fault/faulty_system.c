@@ -2,6 +2,7 @@
  * __real_write() to write(); it sees to the library, which is linked statically, and to nothing within the C library.
  *
  * Only files opened for writing are counted, so that reading goes on as ever. */
+#define _GNU_SOURCE /* O_DIRECT; NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp): the C library's name */
 #include "fault/faulty_system.h"
 
 #include <errno.h>
@@ -9,8 +10,10 @@
 #include <stdarg.h>
 #include <stdint.h>
 #include <sys/types.h>
+#include <unistd.h>
 
 faulty_system faulty = {.room = SIZE_MAX};
+bool faulty_tiny_machine;
 const char *const faulty_call_names[FAULTY_CALL_COUNT] = {"open", "write", "close", "rename", "link"};
 
 int __real_open(const char *path, int flags, ...);
@@ -19,12 +22,14 @@ ssize_t __real_pwrite(int file, const void *bytes, size_t count, off_t place);
 int __real_close(int file);
 int __real_rename(const char *from, const char *to);
 int __real_link(const char *from, const char *to);
+long __real_sysconf(int name);
 int __wrap_open(const char *path, int flags, ...);
 ssize_t __wrap_write(int file, const void *bytes, size_t count);
 ssize_t __wrap_pwrite(int file, const void *bytes, size_t count, off_t place);
 int __wrap_close(int file);
 int __wrap_rename(const char *from, const char *to);
 int __wrap_link(const char *from, const char *to);
+long __wrap_sysconf(int name);
 
 void faulty_reset(void) { faulty = (faulty_system){.room = SIZE_MAX}; }
 
@@ -70,6 +75,7 @@ ssize_t __wrap_write(int file, const void *bytes, size_t count) {
 }
 
 ssize_t __wrap_pwrite(int file, const void *bytes, size_t count, off_t place) {
+  if (fcntl(file, F_GETFL) & O_DIRECT) faulty.uncached++;
   const ssize_t part = room_for_write(count);
   return part < 0 ? -1 : fill_room(__real_pwrite(file, bytes, (size_t)part, place));
 }
@@ -83,3 +89,5 @@ int __wrap_close(int file) {
 int __wrap_rename(const char *from, const char *to) { return fails(FAULTY_RENAME) ? -1 : __real_rename(from, to); }
 
 int __wrap_link(const char *from, const char *to) { return fails(FAULTY_LINK) ? -1 : __real_link(from, to); }
+
+long __wrap_sysconf(int name) { return faulty_tiny_machine && name == _SC_PHYS_PAGES ? 1 : __real_sysconf(name); }

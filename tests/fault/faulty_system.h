@@ -14,10 +14,14 @@ typedef struct faulty_system {
   size_t room;      /* bytes that can be written before the disk is full; SIZE_MAX: no limit */
   bool dribbles;    /* writes take a few bytes only, and every other one is interrupted */
   int calls[FAULTY_CALL_COUNT];
+  int uncached; /* writes that went past the system's cache */
 } faulty_system;
 
 /* What all calls look at. */
 extern faulty_system faulty;
+
+/* The machine has no memory to speak of, so that all files are large for it. Not reset. */
+extern bool faulty_tiny_machine;
 
 /* Nothing fails; calls are counted anew. */
 void faulty_reset(void);

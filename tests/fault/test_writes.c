@@ -2,7 +2,8 @@
  * k, and the disk is full after n bytes. Each time the library must say so, leave the older files as they were, and nothing
  * besides. Writes that are short or interrupted must not matter.
  *
- * The disk of n bytes is tried for so many n in the quick run; LAVES_EVERY=1 takes all. */
+ * The disk of n bytes is tried for so many n in the quick run; LAVES_EVERY=1 takes all. All of it is done twice: as ever, and as
+ * on a machine of so little memory that files go past the system's cache. */
 #include <errno.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -63,7 +64,7 @@ typedef struct fixture {
 static int set_up(void **state) {
   static fixture f;
   f.context = laves_context_create(NULL);
-  f.mesh = fixture_tagged_cube(f.context, 2);
+  f.mesh = fixture_tagged_cube(f.context, faulty_tiny_machine ? 6 : 2); /* the larger one has arrays of several sectors */
   *state = &f;
   const bool right = laves_certify(f.context, f.mesh, NULL, &f.certificate, NULL) == LAVES_OK;
   return right && fixture_folder_make(f.folder) ? 0 : -1;
@@ -249,12 +250,34 @@ static void a_disk_may_know_no_links(void **state) {
   remove_all(f, s);
 }
 
-int main(void) {
+/* Else the second time is the first once more. */
+static void large_files_go_past_the_cache(void **state) {
+  fixture *f = *state;
+  int uncached = 0;
+  for (const subject *s = subjects; s < subjects + SUBJECTS; s++) {
+    faulty_reset();
+    assert_int_equal(write_subject(f, s, NULL), LAVES_OK);
+    uncached += faulty.uncached > 0;
+    remove_all(f, s);
+  }
+  faulty_reset();
+  if (!faulty_tiny_machine) assert_int_equal(uncached, 0);
+  if (faulty_tiny_machine && uncached == 0) print_message("SKIPPED: this file system has no writing past the cache\n");
+  if (faulty_tiny_machine && uncached > 0)
+    assert_true(uncached >= 7); /* the formats of rows: VTU, VTK, Gmsh, HDF5, netCDF, NPZ */
+}
+
+static int run_all(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_call_may_fail),
-      cmocka_unit_test(a_disk_may_be_full_after_any_byte),
-      cmocka_unit_test(short_writes_do_not_matter),
+      cmocka_unit_test(large_files_go_past_the_cache),     cmocka_unit_test(every_call_may_fail),
+      cmocka_unit_test(a_disk_may_be_full_after_any_byte), cmocka_unit_test(short_writes_do_not_matter),
       cmocka_unit_test(a_disk_may_know_no_links),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
+}
+
+int main(void) {
+  const int failed = run_all();
+  faulty_tiny_machine = true;
+  return failed + run_all();
 }

@@ -4,7 +4,7 @@ target_link_libraries(test_allocations PRIVATE laves-fixtures)
 
 add_executable(test_writes fault/test_writes.c fault/faulty_system.c)
 target_link_libraries(test_writes PRIVATE laves-fixtures)
-foreach(call open write pwrite close rename link)
+foreach(call open write pwrite close rename link sysconf)
   target_link_options(test_writes PRIVATE -Wl,--wrap=${call})
 endforeach()
 

@@ -173,6 +173,65 @@ static void test_items_in_order(void **state) {
   assert_int_equal(out.written, 10 + 90 * 2 + 900 * 3 + 9000 * 4 + 90000 * 5 + 200000 * 6 + COUNT);
 }
 
+/* ---- rows ---- */
+
+enum { ROW_MAX = 6000 };
+
+/* Byte i of all rows. */
+static char byte_of_rows(uint64_t i) { return (char)(i * 0x9e3779b97f4a7c15u >> 56); }
+
+static size_t put_rows(const void *user, size_t begin, size_t end, char *bytes) {
+  const size_t row_bytes = *(const size_t *)user;
+  for (size_t i = begin * row_bytes; i < end * row_bytes; i++) *bytes++ = byte_of_rows(i);
+  return (end - begin) * row_bytes;
+}
+
+/* Writes `before` bytes, rows, and once more so many bytes and as many rows, as formats do; holds the file against that. */
+static void assert_rows(fixture *f, size_t before, size_t count, size_t row_bytes, bool past_cache) {
+  static const char rest[2 * 4096 + 1]; /* zeros */
+  const char *path = path_in(f, "rows");
+  laves__output out;
+  assert_int_equal(laves__output_open(&out, f->context, path), LAVES_OK);
+  out.expected = 1;
+  out.uncached_from = past_cache ? 0 : 2;
+  for (int turn = 0; turn < 2; turn++) {
+    laves__output_bytes(&out, rest, before);
+    laves__output_rows(&out, count, row_bytes, put_rows, &row_bytes);
+  }
+  laves__output_complete(&out);
+  laves__output_publish(&out);
+  laves__output_discard(&out);
+  if (out.error.result != LAVES_OK) fail_msg("%zu bytes, %zu rows of %zu: %s", before, count, row_bytes, out.error.text);
+  FILE *file = fopen(path, "rb");
+  assert_non_null(file);
+  const uint64_t bytes = (uint64_t)count * row_bytes, half = before + bytes;
+  for (uint64_t i = 0; i < 2 * half; i++) {
+    const uint64_t at = i % half;
+    const int wanted = at < before ? 0 : (unsigned char)byte_of_rows(at - before), is = getc(file);
+    if (is != wanted)
+      fail_msg("%zu bytes, %zu rows of %zu: byte %llu is %d", before, count, row_bytes, (unsigned long long)i, is);
+  }
+  assert_int_equal(getc(file), EOF);
+  fclose(file);
+}
+
+/* Places and lengths about sectors of 4096 bytes and pieces of 2^20; rows that sectors and pieces cut. */
+static void test_rows_at_any_place(void **state) {
+  fixture *f = *state;
+  static const size_t befores[] = {0, 1, 8, 4088, 4095, 4096, 4097, 8192};
+  static const size_t rows[][2] = {{0, 8},    {1, 1},     {511, 8},  {512, 8},   {513, 8},    {1025, 8},
+                                   {4096, 1}, {12289, 1}, {341, 24}, {1365, 24}, {3, ROW_MAX}};
+  static const size_t large[][2] = {{131072, 8}, {131073, 8}, {100000, 24}, {2097152, 1}, {500, ROW_MAX}};
+  for (int past_cache = 0; past_cache < 2; past_cache++) {
+    for (size_t b = 0; b < sizeof befores / sizeof *befores; b++)
+      for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) assert_rows(f, befores[b], rows[r][0], rows[r][1], past_cache);
+    for (size_t r = 0; r < sizeof large / sizeof *large; r++) {
+      assert_rows(f, 0, large[r][0], large[r][1], past_cache);
+      assert_rows(f, 1001, large[r][0], large[r][1], past_cache);
+    }
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(test_appears_when_published, set_up, tear_down),
@@ -182,6 +241,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(test_refused_targets, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_devices, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_items_in_order, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_rows_at_any_place, set_up, tear_down),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
