@@ -202,17 +202,20 @@ static void assert_rows(fixture *f, size_t before, size_t count, size_t row_byte
   laves__output_publish(&out);
   laves__output_discard(&out);
   if (out.error.result != LAVES_OK) fail_msg("%zu bytes, %zu rows of %zu: %s", before, count, row_bytes, out.error.text);
+  const size_t bytes = count * row_bytes, half = before + bytes;
+  char *wanted = calloc(half + 1, 1), *is = malloc(half + 1);
+  assert_true(wanted && is);
+  put_rows(&row_bytes, 0, count, wanted + before);
   FILE *file = fopen(path, "rb");
   assert_non_null(file);
-  const uint64_t bytes = (uint64_t)count * row_bytes, half = before + bytes;
-  for (uint64_t i = 0; i < 2 * half; i++) {
-    const uint64_t at = i % half;
-    const int wanted = at < before ? 0 : (unsigned char)byte_of_rows(at - before), is = getc(file);
-    if (is != wanted)
-      fail_msg("%zu bytes, %zu rows of %zu: byte %llu is %d", before, count, row_bytes, (unsigned long long)i, is);
+  for (int turn = 0; turn < 2; turn++) {
+    const bool same = fread(is, 1, half, file) == half && memcmp(is, wanted, half) == 0;
+    if (!same) fail_msg("%zu bytes, %zu rows of %zu: half %d is not what was written", before, count, row_bytes, turn);
   }
   assert_int_equal(getc(file), EOF);
   fclose(file);
+  free(is);
+  free(wanted);
 }
 
 /* Places and lengths about sectors of 4096 bytes and pieces of 2^20; rows that sectors and pieces cut. */
@@ -221,14 +224,11 @@ static void test_rows_at_any_place(void **state) {
   static const size_t befores[] = {0, 1, 8, 4088, 4095, 4096, 4097, 8192};
   static const size_t rows[][2] = {{0, 8},    {1, 1},     {511, 8},  {512, 8},   {513, 8},    {1025, 8},
                                    {4096, 1}, {12289, 1}, {341, 24}, {1365, 24}, {3, ROW_MAX}};
-  static const size_t large[][2] = {{131072, 8}, {131073, 8}, {100000, 24}, {2097152, 1}, {500, ROW_MAX}};
+  static const size_t large[][2] = {{131072, 8}, {100000, 24}, {350, ROW_MAX}};
   for (int past_cache = 0; past_cache < 2; past_cache++) {
     for (size_t b = 0; b < sizeof befores / sizeof *befores; b++)
       for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) assert_rows(f, befores[b], rows[r][0], rows[r][1], past_cache);
-    for (size_t r = 0; r < sizeof large / sizeof *large; r++) {
-      assert_rows(f, 0, large[r][0], large[r][1], past_cache);
-      assert_rows(f, 1001, large[r][0], large[r][1], past_cache);
-    }
+    for (size_t r = 0; r < sizeof large / sizeof *large; r++) assert_rows(f, 1001, large[r][0], large[r][1], past_cache);
   }
 }
 
