@@ -21,8 +21,9 @@ if (shots) mkdirSync(shots, { recursive: true });
 
 const folder = mkdtempSync(path.join(tmpdir(), "laves-report-"));
 const laves = (...given) => execFileSync(program, given, { cwd: folder, encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
-const browser = await chromium.launch({ executablePath: browserPath,
+const launch = () => chromium.launch({ executablePath: browserPath,
   args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update"] });
+let browser = await launch();
 
 // A page that is ready, and what it asked the network for.
 async function open(name, options = {}) {
@@ -366,8 +367,16 @@ async function frames(name) {
   await at.close();
 }
 
-try {
+// A browser that ended by itself, of which nothing here is the cause, is started once more.
+async function again(error) {
+  if (browser.isConnected()) throw error;
+  console.log(`the browser ended by itself (${error.message.split("\n")[0]}); all of it once more`);
+  browser = await launch();
   await main();
+}
+
+try {
+  await main().catch(again);
 } finally {
   await browser.close();
   rmSync(folder, { recursive: true });
