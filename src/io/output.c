@@ -198,6 +198,16 @@ void laves__output_flush(laves__output *out) {
   out->used = 0;
 }
 
+uint64_t laves__output_seek(laves__output *out, uint64_t place) {
+  LAVES_ASSERT(!out->direct);
+  laves__output_flush(out);
+  const uint64_t before = out->written;
+  if (out->error.result != LAVES_OK) return before;
+  if (lseek(out->file, (off_t)place, SEEK_SET) < 0) laves__output_fail_system(out, "write", out->target);
+  out->written = place;
+  return before;
+}
+
 void laves__output_bytes(laves__output *out, const void *bytes, size_t count) {
   if (out->error.result != LAVES_OK || count == 0) return;
   if (count > BUFFER_BYTES - out->used) laves__output_flush(out);

@@ -52,6 +52,8 @@ void laves__output_fail_system(laves__output *out, const char *what, const char 
 
 /* Writes what is in the buffer. */
 void laves__output_flush(laves__output *out);
+/* Goes on at another place of a file that is not written directly; returns the place before. */
+uint64_t laves__output_seek(laves__output *out, uint64_t place);
 /* Reports progress; the error is set when that says to cancel. */
 void laves__output_ask_cancel(laves__output *out);
 

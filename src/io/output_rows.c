@@ -137,8 +137,8 @@ static void write_rows(rows *r, uint64_t bytes) {
   if (fault == 0) fault = write_bytes(r, 0, begin);
   if (fault == 0) fault = write_bytes(r, end, bytes);
   errno = fault;
-  if (fault == 0 && out->error.result == LAVES_OK && lseek(out->file, (off_t)out->written, SEEK_SET) < 0) fault = errno;
   if (fault) laves__output_fail_system(out, "write", out->target);
+  laves__output_seek(out, out->written);
 }
 
 void laves__output_rows(laves__output *out, size_t count, size_t row_bytes, laves__output_items_fn *fn, const void *user) {

@@ -7,9 +7,12 @@
  * Names of groups are field data (io/mesh_cells.h).
  *
  * Binary arrays are appended as raw bytes behind the XML, each after a header of UInt64: its byte count, or for compressed
- * arrays the number of blocks, their size, the size of the last (0 when full) and every block's compressed size. The XML
- * names the positions, so compressed arrays are made, in parallel, before the first byte is written.
- * Source: VTK file formats, https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html */
+ * arrays the number of blocks, their size, the size of the last (0 when full) and every block's compressed size. The XML names
+ * the positions of all arrays. Of compressed ones these and the headers are known only in the end: blocks are written as they are
+ * made, and what stands before them once more. Where there is no going back, in a pipe, all blocks are kept until then. Source:
+ * VTK file formats, https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html */
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <zlib.h>
 
@@ -159,40 +162,57 @@ static void compress_range(void *user, size_t begin, size_t end, int worker) {
   deflateEnd(&stream);
 }
 
-static laves_result compress_array(laves_context *context, array *a, int level, double progress, double progress_step,
-                                   laves_error *error) {
+static size_t header_bytes(const array *a) { return (3 + a->block_count) * sizeof *a->header; }
+
+/* Makes the header, without the sizes of compressed blocks, and room for these. */
+static void make_header(laves__output *out, array *a) {
   const uint64_t bytes = raw_bytes(a);
   a->block_count = (size_t)((bytes + BLOCK_BYTES - 1) / BLOCK_BYTES);
-  a->header = laves__alloc_zeroed(context, 3 + a->block_count, sizeof *a->header);
-  a->blocks = laves__alloc_zeroed(context, a->block_count, sizeof *a->blocks);
-  if (!a->header || !a->blocks) return laves__fail_memory(context, error);
+  a->header = laves__alloc_zeroed(out->context, 3 + a->block_count, sizeof *a->header);
+  a->blocks = laves__alloc_zeroed(out->context, a->block_count, sizeof *a->blocks);
+  if (!a->header || !a->blocks) {
+    laves__output_fail_memory(out);
+    return;
+  }
   a->header[0] = a->block_count;
   a->header[1] = BLOCK_BYTES;
   a->header[2] = bytes % BLOCK_BYTES;
+}
+
+static void write_blocks(laves__output *out, array *a, size_t begin, size_t end) {
+  for (size_t i = begin; i < end; i++) {
+    laves__output_bytes(out, a->blocks[i], a->header[3 + i]);
+    laves__free(out->context, a->blocks[i], a->header[3 + i], 1);
+    a->blocks[i] = NULL;
+  }
+}
+
+/* Compresses an array; writes its blocks unless they are to be kept. `share` is the array's part of all work. */
+static void compress_array(laves__output *out, array *a, int level, bool keep, double share) {
   /* A block takes some milliseconds, or a tenth of a second at high levels; a wave is what is between two questions. */
   const bool slow = level >= SLOW_LEVEL;
-  const size_t wave = (size_t)laves__workers(context) * (slow ? 1 : 16), range = slow ? 1 : 4;
-  for (size_t i = 0; i < a->block_count; i += wave) {
+  const size_t wave = (size_t)laves__workers(out->context) * (slow ? 1 : 16), range = slow ? 1 : 4;
+  const double before = out->prepared;
+  for (size_t i = 0; i < a->block_count && out->error.result == LAVES_OK; i += wave) {
     const size_t count = a->block_count - i < wave ? a->block_count - i : wave;
-    compression c = {context, a, i, level};
-    const double done = progress + progress_step * (double)i / (double)a->block_count;
-    if (laves__cancelled(context, "write", done) || !laves__parallel_for(context, NULL, count, range, compress_range, &c))
-      return laves__fail_cancelled(error);
+    compression c = {out->context, a, i, level};
+    out->prepared = before + share * (double)i / (double)a->block_count;
+    if (laves__cancelled(out->context, "write", out->prepared) ||
+        !laves__parallel_for(out->context, NULL, count, range, compress_range, &c)) {
+      laves__fail_cancelled(&out->error);
+      return;
+    }
+    for (size_t k = i; k < i + count; k++)
+      if (!a->blocks[k]) laves__output_fail_memory(out);
+    if (!keep && out->error.result == LAVES_OK) write_blocks(out, a, i, i + count);
   }
-  for (size_t i = 0; i < a->block_count; i++)
-    if (!a->blocks[i]) return laves__fail_memory(context, error);
-  return LAVES_OK;
+  out->prepared = before + share;
 }
 
 static uint64_t compressed_bytes(const array *a) {
-  uint64_t sum = (3 + a->block_count) * sizeof *a->header;
+  uint64_t sum = header_bytes(a);
   for (size_t i = 0; i < a->block_count; i++) sum += a->header[3 + i];
   return sum;
-}
-
-static void write_compressed(laves__output *out, const array *a) {
-  laves__output_bytes(out, a->header, (3 + a->block_count) * sizeof *a->header);
-  for (size_t i = 0; i < a->block_count; i++) laves__output_bytes(out, a->blocks[i], a->header[3 + i]);
 }
 
 static void free_compressed(laves_context *context, array *a) {
@@ -257,7 +277,15 @@ static void write_inline(laves__output *out, const array *a) {
 
 typedef enum form { TEXT, RAW, COMPRESSED } form;
 
-/* One element of the XML; *position is where its data starts behind the XML. */
+static const char before_appended[] = "  <AppendedData encoding=\"raw\">\n_",
+                  behind_appended[] = "\n  </AppendedData>\n</VTKFile>\n";
+
+enum { POSITION_DIGITS = 20 };
+/* Of blocks that are kept, compression takes nearly all of the time; writing them the rest. */
+#define COMPRESSING_SHARE 0.9
+
+/* One element of the XML; *position is where its data starts behind the XML. What follows the position of a compressed array is
+ * padded, so that the XML has one length whatever the positions are. */
 static void write_element(laves__output *out, const array *a, form f, uint64_t *position) {
   laves__output_printf(out, "        <DataArray type=\"%s\" Name=\"%s\"", kind_names[a->kind], a->name);
   if (a->components > 1) laves__output_printf(out, " NumberOfComponents=\"%d\"", a->components);
@@ -267,7 +295,10 @@ static void write_element(laves__output *out, const array *a, form f, uint64_t *
     laves__output_printf(out, "\n        </DataArray>\n");
     return;
   }
-  laves__output_printf(out, " format=\"appended\" offset=\"%llu\"/>\n", (unsigned long long)*position);
+  char number[24];
+  const int digits = snprintf(number, sizeof number, "%llu", (unsigned long long)*position);
+  laves__output_printf(out, " format=\"appended\" offset=\"%s\"%*s/>\n", number, f == COMPRESSED ? POSITION_DIGITS - digits : 0,
+                       "");
   *position += f == RAW ? sizeof(uint64_t) + raw_bytes(a) : compressed_bytes(a);
 }
 
@@ -315,41 +346,71 @@ static void write_xml(laves__output *out, const grid *g, const array *arrays, fo
   laves__output_printf(out, "      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n");
 }
 
-static void write_appended(laves__output *out, const array *arrays, form f) {
-  laves__output_printf(out, "  <AppendedData encoding=\"raw\">\n_");
-  for (int i = 0; i < array_count(arrays->grid); i++)
-    if (f == RAW)
-      write_raw(out, &arrays[i]);
-    else
-      write_compressed(out, &arrays[i]);
-  laves__output_printf(out, "\n  </AppendedData>\n");
+static void write_raw_grid(laves__output *out, const grid *g, const array *arrays) {
+  const int count = array_count(g);
+  for (int i = 0; i < count; i++) out->expected += (double)raw_bytes(&arrays[i]);
+  write_xml(out, g, arrays, RAW);
+  laves__output_printf(out, "%s", before_appended);
+  for (int i = 0; i < count; i++) write_raw(out, &arrays[i]);
+  laves__output_printf(out, "%s", behind_appended);
 }
 
-/* Compression takes nearly all of the time; writing the result the rest. */
-static const double compressing_share = 0.9;
-
-static void compress_arrays(laves__output *out, array arrays[ARRAY_COUNT], int level) {
+/* Compresses all arrays, and writes each array's header, to be written once more, and blocks as they are made. */
+static void compress_arrays(laves__output *out, array *arrays, int count, int level, bool keep, uint64_t *headers_at) {
+  const double whole = keep ? COMPRESSING_SHARE : 1 - out->prepared;
   double total = 0;
-  const int count = array_count(arrays->grid);
   for (int i = 0; i < count; i++) total += (double)raw_bytes(&arrays[i]);
-  for (int i = 0; i < count && out->error.result == LAVES_OK && total > 0; i++) {
-    const double step = compressing_share * (double)raw_bytes(&arrays[i]) / total;
-    compress_array(out->context, &arrays[i], level, out->prepared, step, &out->error);
-    out->prepared += step;
+  for (int i = 0; i < count && out->error.result == LAVES_OK; i++) {
+    array *a = &arrays[i];
+    headers_at[i] = out->written;
+    if (!keep) laves__output_bytes(out, a->header, header_bytes(a));
+    compress_array(out, a, level, keep, total > 0 ? whole * (double)raw_bytes(a) / total : 0);
   }
 }
 
+/* Writes the same once more, with the sizes that are known now. */
+static void write_sizes(laves__output *out, const grid *g, const array *arrays, const uint64_t *headers_at) {
+  const uint64_t end = laves__output_seek(out, 0);
+  write_xml(out, g, arrays, COMPRESSED);
+  for (int i = 0; i < array_count(g); i++) {
+    laves__output_seek(out, headers_at[i]);
+    laves__output_bytes(out, arrays[i].header, header_bytes(&arrays[i]));
+  }
+  laves__output_seek(out, end);
+}
+
+static void write_compressed_grid(laves__output *out, const grid *g, array *arrays, int level) {
+  const int count = array_count(g);
+  const bool keep = out->direct;
+  uint64_t headers_at[ARRAY_COUNT];
+  out->expected = keep ? 0 : HUGE_VAL; /* how much is prepared is all that progress tells */
+  for (int i = 0; i < count; i++) make_header(out, &arrays[i]);
+  if (out->error.result != LAVES_OK) return;
+  if (keep) compress_arrays(out, arrays, count, level, keep, headers_at);
+  for (int i = 0; i < count; i++) out->expected += (double)compressed_bytes(&arrays[i]);
+  write_xml(out, g, arrays, COMPRESSED);
+  laves__output_printf(out, "%s", before_appended);
+  if (!keep) compress_arrays(out, arrays, count, level, keep, headers_at);
+  for (int i = 0; i < count && keep && out->error.result == LAVES_OK; i++) {
+    laves__output_bytes(out, arrays[i].header, header_bytes(&arrays[i]));
+    write_blocks(out, &arrays[i], 0, arrays[i].block_count);
+  }
+  laves__output_printf(out, "%s", behind_appended);
+  if (!keep) write_sizes(out, g, arrays, headers_at);
+}
+
 void laves__write_vtu(laves__output *out, const laves_mesh *mesh, bool ascii, int compression_level) {
-  const form f = ascii ? TEXT : compression_level > 0 ? COMPRESSED : RAW;
   const grid g = {mesh, laves__cell_count(mesh)};
   array arrays[ARRAY_COUNT];
   describe_arrays(&g, arrays);
-  if (f == COMPRESSED) compress_arrays(out, arrays, compression_level);
-  const bool ready = out->error.result == LAVES_OK; /* else some arrays have no blocks */
-  for (int i = 0; i < array_count(&g) && ready; i++)
-    out->expected += f == COMPRESSED ? (double)compressed_bytes(&arrays[i]) : (double)raw_bytes(&arrays[i]);
-  if (ready) write_xml(out, &g, arrays, f);
-  if (ready && f != TEXT) write_appended(out, arrays, f);
-  laves__output_printf(out, "</VTKFile>\n");
+  if (ascii) {
+    for (int i = 0; i < array_count(&g); i++) out->expected += (double)raw_bytes(&arrays[i]);
+    write_xml(out, &g, arrays, TEXT);
+    laves__output_printf(out, "</VTKFile>\n");
+  } else if (compression_level > 0) {
+    write_compressed_grid(out, &g, arrays, compression_level);
+  } else {
+    write_raw_grid(out, &g, arrays);
+  }
   for (int i = 0; i < ARRAY_COUNT; i++) free_compressed(out->context, &arrays[i]);
 }

@@ -23,34 +23,37 @@ enum { QUICK_SIZES = 60, FILES_MAX = 3, PATH_BYTES = FIXTURE_FOLDER_MAX + 60 };
 static const char old_text[] = "what was there before";
 
 /* What is written; a certificate where the name ends in .json. TetGen's three files have one base name. */
+typedef enum form { TEXT, PACKED, RAW } form; /* VTU has three, the others two */
+
 typedef struct subject {
   const char *name;
   laves_format format;
-  bool ascii;
+  form form;
   const char *files[FILES_MAX];
 } subject;
 
 static const subject subjects[] = {
-    {"a.vtu", LAVES_FORMAT_VTU, true, {"a.vtu"}},
-    {"raw.vtu", LAVES_FORMAT_VTU, false, {"raw.vtu"}},
-    {"a.msh", LAVES_FORMAT_GMSH22, true, {"a.msh"}},
-    {"b.msh", LAVES_FORMAT_GMSH41, false, {"b.msh"}},
-    {"a.mesh", LAVES_FORMAT_MEDIT, true, {"a.mesh"}},
-    {"a.meshb", LAVES_FORMAT_MEDIT, false, {"a.meshb"}},
-    {"a.node", LAVES_FORMAT_TETGEN, true, {"a.node", "a.ele", "a.face"}},
-    {"a.vtkhdf", LAVES_FORMAT_VTKHDF, false, {"a.vtkhdf"}},
-    {"a.vtk", LAVES_FORMAT_VTK, false, {"a.vtk"}},
-    {"a.xdmf", LAVES_FORMAT_XDMF, false, {"a.xdmf", "a.h5"}},
-    {"a.exo", LAVES_FORMAT_EXODUS, false, {"a.exo"}},
-    {"a.inp", LAVES_FORMAT_ABAQUS, true, {"a.inp"}},
-    {"a.bdf", LAVES_FORMAT_NASTRAN, true, {"a.bdf"}},
-    {"a.npz", LAVES_FORMAT_NPZ, false, {"a.npz"}},
-    {"grid.npz", LAVES_FORMAT_DMTET, false, {"grid.npz"}},
-    {"a.stl", LAVES_FORMAT_STL, false, {"a.stl"}},
-    {"a.obj", LAVES_FORMAT_OBJ, true, {"a.obj"}},
-    {"a.ply", LAVES_FORMAT_PLY, false, {"a.ply"}},
-    {"a.off", LAVES_FORMAT_OFF, true, {"a.off"}},
-    {"a.json", LAVES_FORMAT_AUTO, true, {"a.json"}},
+    {"a.vtu", LAVES_FORMAT_VTU, TEXT, {"a.vtu"}},
+    {"packed.vtu", LAVES_FORMAT_VTU, PACKED, {"packed.vtu"}},
+    {"a.msh", LAVES_FORMAT_GMSH22, TEXT, {"a.msh"}},
+    {"b.msh", LAVES_FORMAT_GMSH41, PACKED, {"b.msh"}},
+    {"a.mesh", LAVES_FORMAT_MEDIT, TEXT, {"a.mesh"}},
+    {"a.meshb", LAVES_FORMAT_MEDIT, PACKED, {"a.meshb"}},
+    {"a.node", LAVES_FORMAT_TETGEN, TEXT, {"a.node", "a.ele", "a.face"}},
+    {"a.vtkhdf", LAVES_FORMAT_VTKHDF, PACKED, {"a.vtkhdf"}},
+    {"a.vtk", LAVES_FORMAT_VTK, PACKED, {"a.vtk"}},
+    {"a.xdmf", LAVES_FORMAT_XDMF, PACKED, {"a.xdmf", "a.h5"}},
+    {"a.exo", LAVES_FORMAT_EXODUS, PACKED, {"a.exo"}},
+    {"a.inp", LAVES_FORMAT_ABAQUS, TEXT, {"a.inp"}},
+    {"a.bdf", LAVES_FORMAT_NASTRAN, TEXT, {"a.bdf"}},
+    {"a.npz", LAVES_FORMAT_NPZ, PACKED, {"a.npz"}},
+    {"grid.npz", LAVES_FORMAT_DMTET, PACKED, {"grid.npz"}},
+    {"a.stl", LAVES_FORMAT_STL, PACKED, {"a.stl"}},
+    {"a.obj", LAVES_FORMAT_OBJ, TEXT, {"a.obj"}},
+    {"a.ply", LAVES_FORMAT_PLY, PACKED, {"a.ply"}},
+    {"a.off", LAVES_FORMAT_OFF, TEXT, {"a.off"}},
+    {"a.json", LAVES_FORMAT_AUTO, TEXT, {"a.json"}},
+    {"raw.vtu", LAVES_FORMAT_VTU, RAW, {"raw.vtu"}},
 };
 enum { SUBJECTS = sizeof subjects / sizeof *subjects };
 
@@ -125,7 +128,8 @@ static laves_result write_subject(fixture *f, const subject *s, laves_error *err
   if (s->format == LAVES_FORMAT_AUTO) return laves_certificate_write(f->context, &f->certificate, path, error);
   laves_write_options options = laves_write_options_default();
   options.format = s->format;
-  options.ascii = s->ascii;
+  options.ascii = s->form == TEXT;
+  if (s->form == RAW) options.compression = 0;
   return laves_mesh_write(f->context, f->mesh, path, &options, error);
 }
 

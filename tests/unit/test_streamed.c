@@ -2,6 +2,7 @@
  * and what needs all of it at once refuses it. */
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -318,6 +319,64 @@ static void memory_goes_with_the_surface(void **state) {
   assert_true(peak[1] + 16 * 250000 < whole);
 }
 
+/* What a context holds, and held at most. */
+typedef struct tally {
+  atomic_size_t held, most;
+} tally;
+
+static void *counted(void *user, void *pointer, size_t old_bytes, size_t new_bytes) {
+  tally *t = user;
+  void *block = NULL;
+  if (new_bytes > 0)
+    block = realloc(pointer, new_bytes);
+  else
+    free(pointer);
+  if (new_bytes > 0 && !block) return NULL;
+  const size_t held = atomic_fetch_add(&t->held, new_bytes - old_bytes) + new_bytes - old_bytes;
+  size_t most = atomic_load(&t->most);
+  while (held > most && !atomic_compare_exchange_weak(&t->most, &most, held)) {
+  }
+  return block;
+}
+
+static size_t size_of_file(const char *path) {
+  FILE *file = fopen(path, "rb");
+  assert_non_null(file);
+  assert_int_equal(fseek(file, 0, SEEK_END), 0);
+  const long size = ftell(file);
+  fclose(file);
+  return (size_t)size;
+}
+
+/* Blocks of a compressed file go to the file as they are made. */
+static void compressed_blocks_do_not_wait_in_memory(void **state) {
+  (void)state;
+  if (test_stride() > 1) skip(); /* several million tets */
+  static const solid ball = {"sphere(1)", 4000000, LAVES_METHOD_AUTO};
+  tally t = {0};
+  laves_context_options options = laves_context_options_default();
+  options.thread_count = 2;
+  options.reallocate = counted;
+  options.reallocate_user = &t;
+  laves_context *context = laves_context_create(&options);
+  laves_domain *domain = make_domain(context, ball.text);
+  laves_mesh *mesh = make_mesh(context, domain, &ball, true);
+  char path[FIXTURE_FOLDER_MAX + 20];
+  snprintf(path, sizeof path, "%s/ball.vtu", folder);
+  laves_write_options compressed = laves_write_options_default();
+  compressed.compression = 1;
+  const size_t before = atomic_load(&t.held);
+  atomic_store(&t.most, before);
+  assert_int_equal(laves_mesh_write(context, mesh, path, &compressed, NULL), LAVES_OK);
+  assert_int_equal(atomic_load(&t.held), before);
+  const size_t took = atomic_load(&t.most) - before, size = size_of_file(path);
+  if (4 * took > size) fail_msg("%zu bytes of memory for a file of %zu", took, size);
+  laves_mesh_free(mesh);
+  laves_domain_free(domain);
+  laves_context_free(context);
+  assert_int_equal(atomic_load(&t.held), 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(same_as_in_memory),
@@ -329,6 +388,7 @@ int main(void) {
       cmocka_unit_test(checks_refuse),
       cmocka_unit_test(some_wishes_need_memory),
       cmocka_unit_test(memory_goes_with_the_surface),
+      cmocka_unit_test(compressed_blocks_do_not_wait_in_memory),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }
