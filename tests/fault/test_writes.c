@@ -22,9 +22,9 @@ enum { QUICK_SIZES = 60, FILES_MAX = 3, PATH_BYTES = FIXTURE_FOLDER_MAX + 60 };
 
 static const char old_text[] = "what was there before";
 
-/* What is written; a certificate where the name ends in .json. TetGen's three files have one base name. */
-typedef enum form { TEXT, PACKED, RAW } form; /* VTU has three, the others two */
+typedef enum form { TEXT, PACKED, RAW } form; /* VTU has all three; of the others RAW is not asked for */
 
+/* What is written; a certificate where the name ends in .json. TetGen's three files have one base name. */
 typedef struct subject {
   const char *name;
   laves_format format;
